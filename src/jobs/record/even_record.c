@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A whole record, and its channels equally spaced. */
 #include "even_record_internal.h"
+#include "record_stamps_internal.h"
 
 #include "jobs/job_internal.h"
 
@@ -69,6 +70,9 @@ void imk_log_forget_faults(imk_log *log)
 static imk_status space(double rate, imk_gap_policy gaps, imk_even_record *record,
                         imk_findings *findings, imk_error *error)
 {
+    const imk_status settled = imki_settle_times(rate, &record->log, findings, error);
+    if (settled != IMK_OK)
+        return settled;
     record->rows = record->log.rows;
     record->dt = rate > 0 ? 1 / rate : record->log.findings.interval;
     if (record->rows == 0)

@@ -392,21 +392,23 @@ static void assess_length(imk_verdict *v, const imk_identify_log *log)
                          1 / record->dt);
 }
 
-/* Findings of the job itself, without its warnings, which are not part of the verdict. For a curve,
- * only the quality of the fit is known. */
+/* Findings of the job itself. Of its warnings only those about the stamps are part of the verdict.
+ * For a curve, only the quality of the fit is known. */
 static void add_findings(imk_verdict *v, const imk_identify_log *log)
 {
     char text[900];
     for (size_t k = 0; k < log->findings.count; k++) {
         const imk_finding *f = &log->findings.item[k];
         const bool misfit = strncmp(f->code, "curve_misfit", 12) == 0;
-        if (f->level >= IMK_FINDING_WARNING)
+        const bool stamps = strncmp(f->code, "stamps:", 7) == 0;
+        if (f->level >= IMK_FINDING_WARNING && !stamps)
             continue;
         imk_finding_text(f, text, sizeof text);
         if (misfit)
             imki_verdict_add(v, IMK_FINDING_WARNING, "misfit", "%s", text);
         else
-            imki_verdict_add(v, f->level, f->level == IMK_FINDING_GOOD ? "curve" : f->code, "%s",
+            imki_verdict_add(v, f->level,
+                             f->level == IMK_FINDING_GOOD ? "curve" : imk_finding_code(f), "%s",
                              text);
     }
 }
