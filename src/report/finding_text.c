@@ -77,6 +77,10 @@ static const struct message {
      "{0.5g} Hz, or regularly lack rows; cut the log where the rate changes"},
     {"stamps:alternate", "long and short steps of the time alternate, and differ by {0.3g} s: rows "
                          "of two sensors or of two clocks in one log? Separate them"},
+    {"stamps:held",
+     "{name}: {0.3g} % of the rows repeat the row before on all axes, so the sensor has {1.5g} Hz "
+     "and the log {2.5g} Hz: all terms are wrong at short averaging times; log at the rate of the "
+     "sensor, or keep new samples only"},
     {"stamps:rate_differs", "--rate says {0.7g} Hz, but the time column {1.7g} Hz; --rate is used, "
                             "and every result follows from it: check which one is right"},
     /* record_spacing.c */

@@ -8,6 +8,7 @@
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
 #include "jobs/record/even_record_internal.h"
+#include "jobs/record/record_repeats_internal.h"
 #include "jobs/record/record_stamps_internal.h"
 
 #include "imukit/identify_record.h"
@@ -48,6 +49,7 @@ typedef struct long_record {
     bool again;              /* the stamps proved not to be sample times: settle them first */
     imki_stamps stamps;      /* their times, when settled */
     imk_log_findings settled;
+    imki_repeats repeats;
     size_t piece_count;
     piece *pieces;                   /* ROWS of them, for a record that is long */
     bool dirty[IMK_LOG_COLUMNS_MAX]; /* the block has missing values of this channel */
@@ -76,6 +78,8 @@ static void read_block(long_record *s, row_block *block)
     block->rows = 0;
     block->status = s->source->read(s->source->context, ROWS, (double *const *)block->column,
                                     &block->rows, &block->error);
+    if (block->status == IMK_OK)
+        imki_repeats_add(&s->repeats, block->rows, block->column);
 }
 
 /* How many rows there will be, by the size of the source and of the rows of the first block. */
@@ -285,6 +289,7 @@ static imk_status finish(long_record *s, bool *taken, imk_error *error)
     if (!*taken)
         return IMK_OK;
     imki_grid_tell(record, s->first_not_finite, &log->findings);
+    imki_repeats_tell(&s->repeats, record->dt, &log->findings);
     for (size_t c = 0; c < record->count; c++)
         if (s->status[c] != IMK_OK)
             return imki_identify_explain(log, c, s->status[c], &s->error[c], error);
@@ -312,6 +317,7 @@ static bool begin(long_record *s, bool *touched)
         return false;
     }
     *touched = true;
+    imki_repeats_start(&s->repeats, record->count, record->column, record->log.column);
     read_block(s, &s->block[0]);
     if (s->block[0].rows < ROWS)
         read_block(s, &s->block[1]); /* says why it ended there */
@@ -328,6 +334,8 @@ static imk_status settle(long_record *s, imk_error *error)
     if (status == IMK_OK)
         status =
             imki_stamps_settle(&s->stamps, s->source->rate, &s->settled, &s->log->findings, error);
+    imki_repeats_start(&s->repeats, s->log->record.count, s->log->record.column,
+                       s->log->record.log.column);
     if (status == IMK_OK)
         read_block(s, &s->block[0]);
     return status;

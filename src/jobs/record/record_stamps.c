@@ -4,7 +4,7 @@
  * Stamps that fit an even grid are left alone. For the others there are up to three readings, by
  * the interval (stamp_interval.c); each places the rows in their order (stamp_places.c). The one
  * that leaves least unexplained holds: steps back of the clock count fully, lost rows a fifth, rows
- * that are late a twentieth, because rows are lost and late; a drift of the envelope fully. Its
+ * that are late a tenth, because rows are lost and late; a drift of the envelope fully. Its
  * interval is corrected by what the lower envelope drifts. */
 #include "even_record_internal.h"
 #include "record_stamps_internal.h"
@@ -20,7 +20,7 @@
 static const double few_rows = 1e-3;
 /* Steps back beyond this share of the rows: the stamps are no times. */
 static const double few_jumps = 4, steps_back_most = 0.005;
-static const double loss_weight = 0.2, delay_weight = 0.05;
+static const double loss_weight = 0.2, delay_weight = 0.1;
 /* A reading is preferred to one before it where it explains this many rows more. */
 enum { BETTER_BY = 3, WINDOW = 256, GROUPS_IN_WINDOW = 4, REFINEMENTS = 4 };
 
@@ -31,7 +31,14 @@ static const double rows_lost_told = 0.01;
 static const double late_told = 2.0;
 
 /* Mean and median of the steps: gaps are counted by the median. */
-static const double mean_differs = 2e-3;
+static const double mean_differs = 2e-3, errors_beyond = 6;
+
+static bool is_median_off(const imk_log_findings *f)
+{
+    const double error = f->jitter / f->interval / sqrt((double)f->rows);
+    const double off = fabs(f->mean_step / f->interval - 1);
+    return off > fmax(mean_differs, errors_beyond * error);
+}
 
 /* ---- do the stamps fit a grid? ---- */
 
@@ -53,7 +60,7 @@ bool imki_stamps_uneven(double rate, const imk_log_findings *f)
         return true;
     return (odd >= 2 && (double)odd > few_rows * (double)f->rows) ||
            f->largest_reversal > 3 * f->interval || f->missing > 2 * f->rows ||
-           (f->gaps > 0 && fabs(f->mean_step / f->interval - 1) > mean_differs) || is_rounded(f);
+           (f->gaps > 0 && is_median_off(f)) || is_rounded(f);
 }
 
 /* ---- the times as they come ---- */
@@ -168,7 +175,7 @@ static void refine(size_t n, const double *time, imki_stamp_reading *r)
         imki_stamp_reading next = asked;
         next.interval = better;
         imki_read_stamps(n, time, &next, NULL);
-        if (next.down + next.up > r->down + r->up + BETTER_BY)
+        if (unexplained(&next) > unexplained(r) + BETTER_BY)
             break;
         *r = next;
     }
@@ -184,7 +191,7 @@ static bool choose(size_t n, const double *time, double *scratch, choice *c)
     const bool dithered = v->rows_per_stamp > 1.2;
     const struct {
         double interval, threshold;
-    } tried[] = {{v->long_run, dithered ? 1.25 : 0.75}, {v->steps, 0.6}, {v->groups, 0.6}};
+    } tried[] = {{v->steps, 0.6}, {v->long_run, dithered ? 1.25 : 0.75}, {v->groups, 0.6}};
     bool any = false;
     for (size_t k = 0; k < 3; k++) {
         imki_stamp_reading r = {.interval = tried[k].interval,
@@ -230,8 +237,9 @@ static void tell(const choice *c, double jitter, const imki_stamps *s, imk_findi
         tell_groups(c, s->repeated, s->rows, findings);
     if (!grouped && r->latest <= expected + late_told && jitter > imki_jitter_told)
         imki_find(findings, IMK_FINDING_WARNING, "jitter", NULL, IMKI_NUMBERS(100 * jitter));
+    const bool many = (double)r->late > few_rows * (double)s->rows;
     if (r->late > 0 && r->latest > expected + late_told)
-        imki_find(findings, IMK_FINDING_WARNING, "stamps:late", NULL,
+        imki_find(findings, many ? IMK_FINDING_WARNING : IMK_FINDING_NOTE, "stamps:late", NULL,
                   IMKI_NUMBERS((double)r->late, r->latest * r->interval, rate));
     if (r->jumps > 0)
         imki_find(findings, IMK_FINDING_WARNING, "stamps:jumps", NULL,

@@ -16,7 +16,7 @@
 
 #include <math.h>
 
-enum { CATCH_UP = 4 };
+enum { CATCH_UP = 4, END_ROWS = 8 };
 
 /* A step back of more than this, in intervals, is one of the clock. */
 static const double step_back = 0.5, counted_most = 2.0, counted_lost = 3.0;
@@ -95,7 +95,8 @@ static void assess_delay(places *p, size_t i, double e)
     const size_t rows = r->window + (size_t)fmin(CATCH_UP * e, (double)p->n);
     const double stays = least_ahead(p, i, rows, &at);
     /* At the end there may be no time to make it up. */
-    const bool too_soon = p->n - i < r->window / 2 && e < usual_most * fmax(1.0, r->latest);
+    const bool too_soon =
+        (double)(p->n - i) < END_ROWS + 2.0 * e && e < usual_most * fmax(1.0, r->latest);
     if (!(stays > r->threshold && isfinite(stays)) || too_soon) {
         p->trusted = at;
         return;
