@@ -237,15 +237,27 @@ void command_note(const char *format, ...)
     va_end(arguments);
 }
 
+static bool was_given(const command_warning *warning)
+{
+    for (size_t i = 0; i < warning_count; i++)
+        if (strcmp(warnings[i].code, warning->code) == 0 &&
+            strcmp(warnings[i].message, warning->message) == 0)
+            return true;
+    return false;
+}
+
 void command_warn(const char *code, const char *format, ...)
 {
     va_list arguments;
-    command_warning scratch;
-    command_warning *warning = warning_count < WARNINGS_MAX ? &warnings[warning_count++] : &scratch;
-    snprintf(warning->code, sizeof warning->code, "%s", code);
+    command_warning warning;
+    snprintf(warning.code, sizeof warning.code, "%s", code);
     va_start(arguments, format);
-    vsnprintf(warning->message, sizeof warning->message, format, arguments);
+    vsnprintf(warning.message, sizeof warning.message, format, arguments);
     va_end(arguments);
+    if (was_given(&warning))
+        return;
+    if (warning_count < WARNINGS_MAX)
+        warnings[warning_count++] = warning;
     va_start(arguments, format);
     speak(COLOR_YELLOW, "warning:", format, arguments);
     va_end(arguments);

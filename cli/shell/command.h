@@ -77,7 +77,7 @@ bool command_is_stream(const char *path);
 /* "imukit drift: <message>" on standard error, without a label: what a person may want to know. */
 void command_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* A warning goes to standard error and into the JSON. */
+/* A warning goes to standard error and into the JSON, once. */
 typedef struct command_warning {
     char code[40];
     char message[400];

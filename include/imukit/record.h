@@ -60,6 +60,17 @@ typedef struct imk_log_findings {
     /** [s] subtracted from the times: the first one if beyond 1e6 s (clocks that count from an
      *  epoch), so that microseconds keep their resolution; else 0. */
     double time_origin;
+    /** Steps that evenly spaced samples do not have: below 0.4 intervals, or of 1.35 to 4 and more
+     *  than 0.25 off a whole number; steps below 0.25 intervals. */
+    size_t uneven, bursts;
+    double largest_reversal; /**< [s] */
+    double mean_step;        /**< of the steps that are no gap, repeat or reversal [s] */
+    /** Standard deviation of the steps in intervals, each step counted as 2 intervals at most, and
+     *  their correlation with the step before. */
+    double step_scatter, step_correlation;
+    /** Gaps about as far from the gap before as that was from its predecessor. */
+    size_t steady_gaps;
+    size_t doubled; /**< rows equal to the row before in time and values, where these were found */
 } imk_log_findings;
 
 /** Where the rows of a record come from. A function that the source does not offer is NULL. */

@@ -25,6 +25,10 @@
 
 #define SAMPLES_FIRST ": {0} of {1} samples (first: row {2})"
 
+#define UNORDERED "{0} row{0s} whose time does not increase: left out"
+#define DOUBLED                                                                                    \
+    "{0} of {1} rows are the row before them once more, with its time and values: left out"
+
 static const struct message {
     const char *code, *text;
 } messages[] = {
@@ -45,9 +49,39 @@ static const struct message {
                     "stopped: use --gaps longest (the longest clean stretch)"},
     {"not_finite", "{0} row{0s} with a value that is not a finite number or beyond 1e60, first in "
                    "row {1}: counted as missing"},
-    {"unordered", "{0} row{0s} whose time does not increase: left out"},
+    {"unordered", UNORDERED},
+    {"stamps:unordered", UNORDERED},
     {"missing",
      "{0} of {1} samples are missing, in {2} gap{2s}, the longest of {3g} s; the gaps stay empty"},
+    /* record_stamps.c, stamp_rates.c */
+    {"stamps:coarse", "one stamp of the time column is that of {0.3g} rows on average: the rows "
+                      "are counted, and the rate of the long run is {1.7g} Hz; a loss of a few "
+                      "rows within one stamp cannot be seen"},
+    {"stamps:bunched", "the rows come in bunches of {0.3g} on average, stamped when they arrived: "
+                       "they are counted, and the rate of the long run is {1.7g} Hz; if a bunch "
+                       "is not of one sensor, choose its columns with --columns"},
+    {"stamps:late", "{0} row{0s} are stamped late, by up to {1.3g} s, and the delay is made up: "
+                    "the rows are counted, and the rate of the long run is {2.7g} Hz; if the log "
+                    "has the clock of the sensor, too, name that column time with --columns"},
+    {"stamps:jumps", "the clock steps back {0} time{0s}, by up to {1.3g} s: the rows are counted "
+                     "at {2.7g} Hz; rows that are missing there cannot be seen"},
+    {"stamps:wrapped", "the clock begins anew {0} time{0s}, every {1.10g} s: taken as going on"},
+    {"stamps:doubled", DOUBLED},
+    {"doubled", DOUBLED},
+    {"stamps:rounded",
+     "the times are taken as rounded to {0g} s, so the rate is {1.7g} Hz; if rows are missing "
+     "regularly instead, give the columns without the time, and the rate, such as --rate 100Hz"},
+    {"stamps:two_rates",
+     "the sample interval changes for longer times: parts of the log have another rate than "
+     "{0.5g} Hz, or regularly lack rows; cut the log where the rate changes"},
+    {"stamps:alternate", "long and short steps of the time alternate, and differ by {0.3g} s: rows "
+                         "of two sensors or of two clocks in one log? Separate them"},
+    {"stamps:held",
+     "{name}: {0.3g} % of the rows repeat the row before on all axes, so the sensor has {1.5g} Hz "
+     "and the log {2.5g} Hz: all terms are wrong at short averaging times; log at the rate of the "
+     "sensor, or keep new samples only"},
+    {"stamps:rate_differs", "--rate says {0.7g} Hz, but the time column {1.7g} Hz; --rate is used, "
+                            "and every result follows from it: check which one is right"},
     /* record_spacing.c */
     {"mostly_missing", "{0} good row{0s} and {1} missing sample{1s} are too little to interpolate; "
                        "use --gaps longest"},

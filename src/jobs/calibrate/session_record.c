@@ -5,6 +5,7 @@
 
 #include "jobs/job_internal.h"
 #include "jobs/record/even_record_internal.h"
+#include "jobs/record/record_stamps_internal.h"
 
 #include "imukit/even_record.h"
 #include "imukit/names.h"
@@ -47,6 +48,19 @@ static imk_status check_gap(imk_calibrate_record *log, int sensor, int axis, int
     snprintf(which, sizeof which, "%s_%c but no %s_%c", key, imk_axis_letter(axis), key,
              imk_axis_letter(axes));
     return imki_fail(&log->loaded, error, IMK_ERROR_COLUMN, "axis_gap", which, 0, NULL);
+}
+
+/* Even times where the stamps are late, coarse or of a clock that jumps. Those that fit no rate
+ * stay: a procedure needs times, but not evenly spaced ones. */
+static imk_status settle_times(double rate, imk_calibrate_record *log, imk_findings *findings,
+                               imk_error *error)
+{
+    const size_t before = findings->count;
+    const imk_status status = imki_settle_times(rate, &log->log, findings, error);
+    if (status != IMK_ERROR_TIME_ORDER)
+        return status;
+    findings->count = before;
+    return IMK_OK;
 }
 
 /* The axes of one kind of sensor, in their order. */
@@ -205,6 +219,8 @@ imk_status imk_calibrate_record_load(const imk_calibrate_log_settings *settings,
         return status;
     record->path = name;
     status = imki_record_load(source, imki_job_of(job), &record->log, error);
+    if (status == IMK_OK)
+        status = settle_times(source->rate, record, &record->loaded, error);
     if (status == IMK_OK)
         status = make_record(record, settings->section, &record->loaded, error);
     if (status == IMK_OK)

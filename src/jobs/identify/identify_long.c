@@ -8,6 +8,8 @@
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
 #include "jobs/record/even_record_internal.h"
+#include "jobs/record/record_repeats_internal.h"
+#include "jobs/record/record_stamps_internal.h"
 
 #include "imukit/identify_record.h"
 #include "imukit/samples.h"
@@ -44,6 +46,10 @@ typedef struct long_record {
     size_t rows;             /* of the record so far */
     size_t first_not_finite; /* from 1 */
     bool uneven;             /* this needs the policies for whole records */
+    bool again;              /* the stamps proved not to be sample times: settle them first */
+    imki_stamps stamps;      /* their times, when settled */
+    imk_log_findings settled;
+    imki_repeats repeats;
     size_t piece_count;
     piece *pieces;                   /* ROWS of them, for a record that is long */
     bool dirty[IMK_LOG_COLUMNS_MAX]; /* the block has missing values of this channel */
@@ -72,6 +78,8 @@ static void read_block(long_record *s, row_block *block)
     block->rows = 0;
     block->status = s->source->read(s->source->context, ROWS, (double *const *)block->column,
                                     &block->rows, &block->error);
+    if (block->status == IMK_OK)
+        imki_repeats_add(&s->repeats, block->rows, block->column);
 }
 
 /* How many rows there will be, by the size of the source and of the rows of the first block. */
@@ -90,11 +98,19 @@ static bool is_long(const long_record *s)
            expected_rows(s) > IMK_IDENTIFY_RECORD_ADVISED;
 }
 
+/* Times of the rows of the block; NULL: there are none. */
+static const double *times_of(const long_record *s, const row_block *block)
+{
+    if (s->time_column < 0)
+        return NULL;
+    return s->stamps.time ? s->stamps.time + s->rows : block->column[s->time_column];
+}
+
 /* Cut the block where samples are missing or rows are left out. */
 static void cut_block(long_record *s, const row_block *block)
 {
     imk_even_record *record = &s->log->record;
-    const double *time = s->time_column >= 0 ? block->column[s->time_column] : NULL;
+    const double *time = times_of(s, block);
     piece *last = NULL;
     s->piece_count = 0;
     s->grid.rows = s->rows + block->rows;
@@ -160,7 +176,7 @@ static void count_not_finite(long_record *s)
 {
     imk_even_record *record = &s->log->record;
     const row_block *block = &s->block[s->current];
-    const double *time = s->time_column >= 0 ? block->column[s->time_column] : NULL;
+    const double *time = times_of(s, block);
     bool any = time && !all_readings(block->rows, time);
     for (size_t c = 0; c < record->count; c++)
         any = any || s->dirty[c];
@@ -253,7 +269,15 @@ static imk_status finish(long_record *s, bool *taken, imk_error *error)
     const bool times = s->time_column >= 0;
     record->rows = s->grid.places;
     record->log.rows = s->rows;
-    record->log.findings = s->source->findings(s->source->context);
+    record->log.findings = s->stamps.time ? s->settled : s->source->findings(s->source->context);
+    if (!s->stamps.time && times) {
+        s->again = imki_stamps_uneven(s->source->rate, &record->log.findings);
+        *taken = !s->again;
+        if (s->again)
+            return IMK_OK;
+        imki_tell_steps(&record->log.findings, &log->findings);
+        imki_tell_rate(s->source->rate, record->log.findings.mean_step, &log->findings);
+    }
     if (!(s->source->rate > 0) && times)
         record->dt = (s->grid.last_time - s->grid.first_time) / (double)(s->grid.places - 1);
     const imk_status status = times ? imki_grid_jitter(record, &log->findings, error) : IMK_OK;
@@ -265,6 +289,7 @@ static imk_status finish(long_record *s, bool *taken, imk_error *error)
     if (!*taken)
         return IMK_OK;
     imki_grid_tell(record, s->first_not_finite, &log->findings);
+    imki_repeats_tell(&s->repeats, record->dt, &log->findings);
     for (size_t c = 0; c < record->count; c++)
         if (s->status[c] != IMK_OK)
             return imki_identify_explain(log, c, s->status[c], &s->error[c], error);
@@ -292,13 +317,37 @@ static bool begin(long_record *s, bool *touched)
         return false;
     }
     *touched = true;
+    imki_repeats_start(&s->repeats, record->count, record->column, record->log.column);
     read_block(s, &s->block[0]);
     if (s->block[0].rows < ROWS)
         read_block(s, &s->block[1]); /* says why it ended there */
-    const double interval = s->source->findings(s->source->context).interval;
-    record->dt = s->source->rate > 0 ? 1 / s->source->rate : interval;
+    s->settled = s->source->findings(s->source->context);
+    s->again = s->again || (s->time_column >= 0 && is_long(s) &&
+                            imki_stamps_uneven(s->source->rate, &s->settled));
+    return is_long(s);
+}
+
+/* Stamps that are no sample times are replaced before the rows are read. */
+static imk_status settle(long_record *s, imk_error *error)
+{
+    imk_status status = imki_stamps_of_source(s->source, s->job, &s->stamps, error);
+    if (status == IMK_OK)
+        status =
+            imki_stamps_settle(&s->stamps, s->source->rate, &s->settled, &s->log->findings, error);
+    imki_repeats_start(&s->repeats, s->log->record.count, s->log->record.column,
+                       s->log->record.log.column);
+    if (status == IMK_OK)
+        read_block(s, &s->block[0]);
+    return status;
+}
+
+/* @return false: the record is to be loaded */
+static bool begin_grid(long_record *s)
+{
+    imk_even_record *record = &s->log->record;
+    record->dt = s->source->rate > 0 ? 1 / s->source->rate : s->settled.interval;
     s->grid.interval = record->dt;
-    return is_long(s) && record->dt > 0 && begin_records(s);
+    return record->dt > 0 && begin_records(s);
 }
 
 /* What is wrong with the record itself, loading it tells best. What the system refuses may be given
@@ -331,8 +380,9 @@ static imk_status forget(long_record *s, bool touched, imk_error *error)
     return touched ? s->source->rewind(s->source->context, error) : IMK_OK;
 }
 
-imk_status imki_identify_long(imk_identify_log *log, const imk_record_source *source,
-                              const imk_job *job, bool *taken, imk_error *error)
+/* One attempt. @param again  to settle the stamps first; says when that proves necessary */
+static imk_status identify_once(imk_identify_log *log, const imk_record_source *source,
+                                const imk_job *job, bool *taken, bool *again, imk_error *error)
 {
     imki_arena arena = {.allocator = job->allocator};
     long_record *s = imki_arena_take(&arena, sizeof *s);
@@ -344,17 +394,36 @@ imk_status imki_identify_long(imk_identify_log *log, const imk_record_source *so
     s->source = source;
     s->job = job;
     s->arena.allocator = job->allocator;
+    s->again = *again;
     const bool long_enough = begin(s, &touched);
     imk_status status = refused_by_system(s, error);
-    if (status == IMK_OK && long_enough) {
+    if (status == IMK_OK && long_enough && s->again)
+        status = settle(s, error);
+    s->again = false;
+    const bool ready = status == IMK_OK && long_enough && begin_grid(s);
+    if (status == IMK_OK)
+        status = refused_by_system(s, error);
+    if (status == IMK_OK && ready) {
         status = pass_record(s, error);
         *taken = !s->uneven;
         if (status == IMK_OK && *taken)
             status = finish(s, taken, error);
     }
+    *again = s->again;
     if (status == IMK_OK && !*taken)
         status = forget(s, touched, error);
+    imki_stamps_free(&s->stamps);
     imki_arena_free(&s->arena);
     imki_arena_free(&arena);
+    return status;
+}
+
+imk_status imki_identify_long(imk_identify_log *log, const imk_record_source *source,
+                              const imk_job *job, bool *taken, imk_error *error)
+{
+    bool again = false;
+    imk_status status = identify_once(log, source, job, taken, &again, error);
+    if (status == IMK_OK && again)
+        status = identify_once(log, source, job, taken, &again, error);
     return status;
 }

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A whole record, and its channels equally spaced. */
 #include "even_record_internal.h"
+#include "record_repeats_internal.h"
+#include "record_stamps_internal.h"
 
 #include "jobs/job_internal.h"
 
@@ -72,6 +74,9 @@ void imk_log_forget_faults(imk_log *log)
 static imk_status space(double rate, imk_gap_policy gaps, imk_even_record *record,
                         imk_findings *findings, imk_error *error)
 {
+    const imk_status settled = imki_settle_times(rate, &record->log, findings, error);
+    if (settled != IMK_OK)
+        return settled;
     record->rows = record->log.rows;
     record->dt = rate > 0 ? 1 / rate : record->log.findings.interval;
     if (record->rows == 0)
@@ -86,15 +91,27 @@ static imk_status space(double rate, imk_gap_policy gaps, imk_even_record *recor
                                  : imki_space_evenly(rate, gaps, record, findings, error);
 }
 
+/* Held samples are seen in the rows as they are in the log. */
+static void count_repeats(const imk_even_record *record, imki_repeats *repeats)
+{
+    imki_repeats_start(repeats, record->count, record->column, record->log.column);
+    imki_repeats_add(repeats, record->log.rows, record->log.data);
+}
+
 imk_status imk_even_record_load(const imk_record_source *source, imk_gap_policy gaps,
                                 const imk_job *job, imk_even_record *record, imk_findings *findings,
                                 imk_error *error)
 {
     *record = (imk_even_record){.count = 0};
-    const imk_status status = imki_record_load(source, job, &record->log, error);
+    imki_repeats repeats;
+    imk_status status = imki_record_load(source, job, &record->log, error);
     if (status != IMK_OK)
         return status;
     imk_even_record_choose(record);
     imk_log_forget_faults(&record->log);
-    return space(source->rate, gaps, record, findings, error);
+    count_repeats(record, &repeats);
+    status = space(source->rate, gaps, record, findings, error);
+    if (status == IMK_OK)
+        imki_repeats_tell(&repeats, record->dt, findings);
+    return status;
 }

@@ -13,7 +13,8 @@
 /* Scatter of the steps, as a share of the interval: beyond the first the record is said to be
  * jittered, beyond the second its times are no grid. Uniform scatter of one interval's width is
  * 0.29, its difference of neighbours 0.41. */
-static const double jitter_told = 0.05, jitter_most = 0.3;
+const double imki_jitter_told = 0.05;
+static const double jitter_most = 0.3;
 
 /* More empty places than this for every row are a jump of the clock, not missing samples. */
 enum { EMPTY_MOST = 20, EMPTY_ALLOWED = 1000 };
@@ -97,14 +98,20 @@ static size_t count_not_finite(const imk_even_record *record, const double *time
     return count;
 }
 
+/* More than 1 % are a fault of the record. */
+static const char *unordered_code(const imk_even_record *record)
+{
+    return record->unordered > record->log.rows / 100 ? "stamps:unordered" : "unordered";
+}
+
 void imki_grid_tell(const imk_even_record *record, size_t first_not_finite, imk_findings *findings)
 {
     if (record->not_finite > 0)
         imki_find(findings, IMK_FINDING_WARNING, "not_finite", NULL,
                   IMKI_NUMBERS((double)record->not_finite, (double)first_not_finite));
-    if (record->unordered > 0)
-        imki_find(findings, IMK_FINDING_WARNING, "unordered", NULL,
-                  IMKI_NUMBERS((double)record->unordered));
+    if (record->unordered > record->log.findings.doubled)
+        imki_find(findings, IMK_FINDING_WARNING, unordered_code(record), NULL,
+                  IMKI_NUMBERS((double)record->unordered, (double)record->log.rows));
     if (record->missing > 0)
         imki_find(findings, IMK_FINDING_WARNING, "missing", NULL,
                   IMKI_NUMBERS((double)record->missing, (double)record->rows, (double)record->holes,
@@ -117,7 +124,7 @@ imk_status imki_grid_jitter(const imk_even_record *record, imk_findings *finding
     if (share > jitter_most)
         return imki_fail(findings, error, IMK_ERROR_TIME_ORDER, "no_grid", NULL,
                          IMKI_NUMBERS(100 * share, record->dt));
-    if (share > jitter_told)
+    if (share > imki_jitter_told)
         imki_find(findings, IMK_FINDING_WARNING, "jitter", NULL, IMKI_NUMBERS(100 * share));
     return IMK_OK;
 }

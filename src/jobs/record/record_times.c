@@ -7,6 +7,9 @@
  *                the groups' medians (of 4096 groups' medians each, beyond 4096 groups)
  *     gap:      step >= 1.5 intervals;  missing in it: round(step / interval) - 1
  *     jitter  = sqrt(mean((step - interval)^2)) over the positive steps that are no gap
+ *     uneven:   step < 0.4 intervals, or one of 1.35 to 4 intervals that is more than 0.25 off a
+ *               whole number of them; a burst is a step < 0.25 intervals
+ *     pattern = correlation of neighbouring steps, each limited to two intervals
  *
  * A time that is not finite makes no step, neither to it nor from it. */
 #include "record_times_internal.h"
@@ -14,20 +17,39 @@
 #include "imukit/samples.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-static int compare_doubles(const void *a, const void *b)
+static void swap(double *a, double *b)
 {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    const double held = *a;
+    *a = *b;
+    *b = held;
 }
 
-/* Lower median for even counts: a step that did occur. Reorders the values. */
+/* Lower median for even counts: a step that did occur. Reorders the values: quickselect, with the
+ * middle as pivot, so that sorted and equal values are fast. */
 static double median_of(double *values, size_t count)
 {
-    qsort(values, count, sizeof values[0], compare_doubles);
-    return values[(count - 1) / 2];
+    const size_t middle = (count - 1) / 2;
+    size_t first = 0, last = count - 1;
+    while (first < last) {
+        const double pivot = values[first + (last - first) / 2];
+        size_t i = first, j = last;
+        for (;;) {
+            while (values[i] < pivot)
+                i++;
+            while (pivot < values[j])
+                j--;
+            if (i >= j)
+                break;
+            swap(&values[i++], &values[j--]);
+        }
+        if (middle <= j) /* [first, j] is not above the pivot, [j + 1, last] not below */
+            last = j;
+        else
+            first = j + 1;
+    }
+    return values[middle];
 }
 
 static double median_of_copy(const double *values, size_t count)
@@ -64,15 +86,42 @@ static double interval_now(const imki_record_times *times)
     return times->pending > 0 ? median_of_pending(times) : 0.0;
 }
 
-/* Sums over the regular steps, and the gaps. */
+/* Sums over the regular steps, the gaps, and what does not fit even samples. */
 typedef struct assessment {
-    size_t gaps, first_gap, missing, regular;
+    size_t gaps, first_gap, missing, regular, uneven, bursts;
     double sum, square_sum;
+    imki_step_pattern pattern;
 } assessment;
+
+/* Neighbouring steps, and the distances of gaps. */
+static void follow_pattern(imki_step_pattern *p, double share, bool gap, size_t row)
+{
+    const double d = (share < 2.0 ? share : 2.0) - 1.0;
+    p->steps++;
+    p->sum += d;
+    p->square_sum += d * d;
+    p->product_sum += d * p->last;
+    p->last = d;
+    if (!gap)
+        return;
+    const size_t distance = row - p->gap_row;
+    const size_t change =
+        distance > p->gap_distance ? distance - p->gap_distance : p->gap_distance - distance;
+    p->steady_gaps += change <= 1 + distance / 4;
+    p->gap_row = row;
+    p->gap_distance = distance;
+}
+
+static void assess_odd(assessment *j, double share)
+{
+    j->bursts += share < 0.25;
+    j->uneven += share < 0.4 || (share > 1.35 && share < 4.0 && fabs(share - round(share)) > 0.25);
+}
 
 static assessment assess(const imki_record_times *times, double interval, double reference)
 {
-    assessment j = {0};
+    assessment j = {.pattern = times->pattern};
+    const double rate = 1.0 / interval;
     for (size_t i = 0; i < times->pending; i++) {
         const imki_record_step step = times->step[i];
         const size_t intervals = imk_step_intervals(step.size, interval);
@@ -86,6 +135,8 @@ static assessment assess(const imki_record_times *times, double interval, double
             j.sum += deviation;
             j.square_sum += deviation * deviation;
         }
+        assess_odd(&j, step.size * rate);
+        follow_pattern(&j.pattern, step.size * rate, intervals > 1, step.row);
     }
     return j;
 }
@@ -97,6 +148,9 @@ static void add_assessment(imki_record_times *times, const assessment *j)
         found->first_gap = j->first_gap;
     found->gaps += j->gaps;
     found->missing += j->missing;
+    found->uneven += j->uneven;
+    found->bursts += j->bursts;
+    times->pattern = j->pattern;
     times->regular += j->regular;
     times->deviation_sum += j->sum;
     times->deviation_square_sum += j->square_sum;
@@ -142,8 +196,23 @@ void imki_record_times_add(imki_record_times *times, size_t first_row, size_t co
         } else if (step < 0.0) {
             if (found->reversals++ == 0)
                 found->first_reversal = first_row + i;
+            found->largest_reversal = fmax(found->largest_reversal, -step);
         }
     }
+}
+
+/* Correlation of neighbouring steps; how many gaps are as far from the one before as that was. */
+static void tell_pattern(const imki_step_pattern *p, imk_log_findings *found)
+{
+    const double n = (double)p->steps;
+    if (p->steps < 3)
+        return;
+    const double mean = p->sum / n, variance = p->square_sum / n - mean * mean;
+    if (variance > 0.0) {
+        found->step_scatter = sqrt(variance);
+        found->step_correlation = (p->product_sum / n - mean * mean) / variance;
+    }
+    found->steady_gaps = p->steady_gaps;
 }
 
 imk_log_findings imki_record_times_findings(const imki_record_times *times)
@@ -156,13 +225,17 @@ imk_log_findings imki_record_times_findings(const imki_record_times *times)
         found.first_gap = j.first_gap;
     found.gaps += j.gaps;
     found.missing += j.missing;
+    found.uneven += j.uneven;
+    found.bursts += j.bursts;
     found.interval = interval;
+    tell_pattern(&j.pattern, &found);
     const double regular = (double)(times->regular + j.regular);
     if (regular > 0.0) {
         /* mean((s - I)^2) from the sums about the reference r, with e = I - r */
         const double mean = (times->deviation_sum + j.sum) / regular;
         const double square = (times->deviation_square_sum + j.square_sum) / regular;
         const double e = interval - reference;
+        found.mean_step = reference + mean;
         const double jitter_square = square - 2.0 * e * mean + e * e;
         found.jitter = jitter_square > 0.0 ? sqrt(jitter_square) : 0.0;
     }

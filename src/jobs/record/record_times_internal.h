@@ -14,6 +14,12 @@ typedef struct imki_record_step {
     size_t row;
 } imki_record_step;
 
+/* What neighbouring steps have to do with each other. */
+typedef struct imki_step_pattern {
+    size_t steps, gap_row, gap_distance, steady_gaps;
+    double last, sum, square_sum, product_sum; /* of step/interval - 1, 1 at most */
+} imki_step_pattern;
+
 typedef struct imki_record_times {
     imk_log_findings findings; /* without those of the pending group */
     double given_interval;     /* 1/rate [s], 0: median */
@@ -26,6 +32,7 @@ typedef struct imki_record_times {
     double reference;               /* [s], the first median: deviations are summed from it */
     size_t regular;                 /* steps that are no gap */
     double deviation_sum, deviation_square_sum;
+    imki_step_pattern pattern;
 } imki_record_times;
 
 /* Begin with a structure of zeros: clearing its 128 KiB again takes longer than reading a short

@@ -413,7 +413,11 @@ static void assess_length(imk_verdict *v, const imk_identify_log *log)
 /* What a job found that is allowed for in the estimate. */
 static bool is_harmless(const imk_finding *f)
 {
-    return strcmp(f->code, "missing") == 0 || strcmp(f->code, "curve_tolerance") == 0;
+    static const char *const codes[] = {"missing", "not_finite", "unordered", "curve_tolerance"};
+    for (size_t k = 0; k < sizeof codes / sizeof codes[0]; k++)
+        if (strcmp(f->code, codes[k]) == 0)
+            return true;
+    return false;
 }
 
 /* Findings of the job itself. For a curve, only the quality of the fit is known. */
@@ -428,7 +432,8 @@ static void add_findings(imk_verdict *v, const imk_identify_log *log)
         if (misfit)
             imki_verdict_add(v, IMK_FINDING_WARNING, "misfit", "%s", text);
         else if (f->level < IMK_FINDING_WARNING || !is_harmless(f))
-            imki_verdict_add(v, f->level, f->level == IMK_FINDING_GOOD ? "curve" : f->code, "%s",
+            imki_verdict_add(v, f->level,
+                             f->level == IMK_FINDING_GOOD ? "curve" : imk_finding_code(f), "%s",
                              text);
         if (f->level == IMK_FINDING_WARNING && v->count > before)
             v->message[before].told = true;

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Is a sensor slower than the log, so that rows repeat its samples?
+ *
+ * A share h of the rows repeats the row before on all axes of the sensor at once; the others do on
+ * axis c by chance, with probability u_c, independently:
+ *
+ *     p_c = h + (1 - h) u_c        rows equal on axis c
+ *     p   = h + (1 - h) prod u_c   rows equal on all axes
+ *
+ * h follows from the shares p_c and p. The same at a distance at which nothing is held tells what
+ * correlated axes and stretches of less noise make of it; the difference is what is held. A clock
+ * holds regularly: the repeats among WINDOW rows vary far less than those of chance, whose variance
+ * is their mean. */
+#include "record_repeats_internal.h"
+
+#include "jobs/job_internal.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+enum { ROWS = 2048, FAR = 16, WINDOW = 64, LEAST = 256, HALVINGS = 50 };
+
+/* Fewer repeats change no result. */
+static const double held_told = 0.01;
+/* Standard errors of a share beyond which it is none of chance: 1e-9. */
+static const double errors_beyond = 6.0;
+/* Values are fine when they are equal by chance this rarely; one channel alone must be. */
+static const double fine = 1e-3;
+/* Variance of the repeats in a window over their mean: a clock; not one stuck stretch. */
+static const double regular_most = 0.5, scattered_most = 2.0;
+/* Rows equal by chance alone on all axes: beyond this nothing can be told. */
+static const double chance_most = 0.5;
+
+void imki_repeats_start(imki_repeats *r, size_t count, const int *channel,
+                        const imk_log_column *columns)
+{
+    memset(r, 0, sizeof *r);
+    for (size_t c = 0; c < count; c++) {
+        r->others = r->others || columns[channel[c]].quantity == IMK_QUANTITY_OTHER;
+        const bool accel = columns[channel[c]].quantity == IMK_QUANTITY_SPECIFIC_FORCE;
+        imki_repeat_counts *sensor = &r->sensor[accel];
+        sensor->column[sensor->channels++] = channel[c];
+    }
+}
+
+/* Rows equal to the one `lag` before; `all` keeps those that were equal on all axes so far. */
+static size_t count_equal(size_t rows, const double *x, size_t lag, uint8_t *all)
+{
+    size_t count = 0;
+    for (size_t i = FAR; i < rows; i++) {
+        const uint8_t equal = x[i] == x[i - lag];
+        all[i] &= equal;
+        count += equal;
+    }
+    return count;
+}
+
+static void count_windows(imki_repeat_counts *s, size_t rows, const uint8_t *all)
+{
+    for (size_t begin = FAR; begin + WINDOW <= rows; begin += WINDOW) {
+        double repeats = 0;
+        for (size_t i = begin; i < begin + WINDOW; i++)
+            repeats += all[i];
+        s->windows++;
+        s->sum += repeats;
+        s->square_sum += repeats * repeats;
+    }
+}
+
+static void add_rows(imki_repeat_counts *s, size_t rows, double *const *columns, size_t first)
+{
+    uint8_t all[2][ROWS];
+    memset(all, 1, sizeof all);
+    for (size_t c = 0; c < s->channels; c++) {
+        const double *x = columns[s->column[c]] + first;
+        s->equal[c][0] += count_equal(rows, x, 1, all[0]);
+        s->equal[c][1] += count_equal(rows, x, FAR, all[1]);
+    }
+    for (size_t i = FAR; i < rows; i++) {
+        s->all[0] += all[0][i];
+        s->all[1] += all[1][i];
+    }
+    s->rows += rows - FAR;
+    count_windows(s, rows, all[0]);
+}
+
+void imki_repeats_add(imki_repeats *r, size_t rows, double *const *columns)
+{
+    for (int k = 0; k < 2; k++)
+        for (size_t first = 0; r->sensor[k].channels > 0 && first + FAR < rows; first += ROWS)
+            add_rows(&r->sensor[k], rows - first < ROWS ? rows - first : ROWS, columns, first);
+}
+
+/* Share of rows equal on all axes if a share h of them is held. */
+static double share_of(const imki_repeat_counts *s, int lag, double h, double *chance)
+{
+    *chance = 1;
+    for (size_t c = 0; c < s->channels; c++)
+        *chance *= fmax(0, ((double)s->equal[c][lag] / (double)s->rows - h) / (1 - h));
+    return h + (1 - h) * *chance;
+}
+
+/* Share of rows held, and of the others those that are equal by chance. */
+static double held_share(const imki_repeat_counts *s, int lag, double *chance)
+{
+    double low = 0, high = 1;
+    const double all = (double)s->all[lag] / (double)s->rows;
+    for (size_t c = 0; c < s->channels; c++)
+        high = fmin(high, (double)s->equal[c][lag] / (double)s->rows);
+    high = fmin(high, 1 - 1 / (double)s->rows);
+    for (int k = 0; k < HALVINGS; k++) {
+        const double middle = (low + high) / 2;
+        if (share_of(s, lag, middle, chance) < all)
+            low = middle;
+        else
+            high = middle;
+    }
+    share_of(s, lag, low, chance);
+    return low;
+}
+
+/* Of one axis, every repeat of fine values is held. */
+static double held_of(const imki_repeat_counts *s, double *chance)
+{
+    const double far = (double)s->all[1] / (double)s->rows;
+    if (s->channels == 1) {
+        *chance = far;
+        return far < fine ? (double)s->all[0] / (double)s->rows : 0;
+    }
+    double far_chance;
+    const double near = held_share(s, 0, chance);
+    return near - held_share(s, 1, &far_chance);
+}
+
+static void tell_sensor(const imki_repeat_counts *s, const char *name, double dt,
+                        imk_findings *findings)
+{
+    double chance;
+    if (s->channels == 0 || s->rows < LEAST || s->windows < 2)
+        return;
+    const double n = (double)s->rows, held = held_of(s, &chance);
+    const double mean = s->sum / s->windows;
+    const double variance = s->square_sum / s->windows - mean * mean;
+    const bool beyond = held > held_told && held > errors_beyond * sqrt(held / n);
+    const bool regular = variance < regular_most * mean;
+    const bool scattered = chance < fine && variance < scattered_most * mean;
+    if (beyond && chance < chance_most && (regular || scattered))
+        imki_find(findings, IMK_FINDING_WARNING, "stamps:held", name,
+                  IMKI_NUMBERS(100 * held, (1 - held) / dt, 1 / dt));
+}
+
+void imki_repeats_tell(const imki_repeats *r, double dt, imk_findings *findings)
+{
+    for (int k = 0; k < 2; k++)
+        tell_sensor(&r->sensor[k], k == 1 ? "accel" : r->others ? "columns" : "gyro", dt, findings);
+}

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Samples of a slow sensor, held in the rows of a faster log. */
+#ifndef IMUKI_RECORD_REPEATS_INTERNAL_H
+#define IMUKI_RECORD_REPEATS_INTERNAL_H
+
+#include "imukit/job.h"
+#include "imukit/record.h"
+
+/* What is counted of one sensor: rows whose channels equal those of a row before, [0] of the next
+ * row before, [1] of one far enough to be equal by chance only. */
+typedef struct imki_repeat_counts {
+    int column[IMK_LOG_COLUMNS_MAX];
+    size_t channels, rows, all[2], equal[IMK_LOG_COLUMNS_MAX][2];
+    /* of windows of rows: number, and sums of the repeats in one and of their squares */
+    double windows, sum, square_sum;
+} imki_repeat_counts;
+
+typedef struct imki_repeats {
+    imki_repeat_counts sensor[2]; /* gyros, accelerometers */
+    bool others;                  /* the first are no gyros but all other columns */
+} imki_repeats;
+
+/* Begin with the channels that are analysed. */
+void imki_repeats_start(imki_repeats *repeats, size_t count, const int *channel,
+                        const imk_log_column *columns);
+/* Count in some rows of the log, one array for each column. */
+void imki_repeats_add(imki_repeats *repeats, size_t rows, double *const *columns);
+/* Tell of sensors that are slower than the log. @param dt  of the log [s] */
+void imki_repeats_tell(const imki_repeats *repeats, double dt, imk_findings *findings);
+
+#endif
