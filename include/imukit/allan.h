@@ -114,7 +114,8 @@ typedef enum imk_power_law {
     IMK_RANDOM_RUN_RATE = -4
 } imk_power_law;
 
-/** Noise type at averaging factor m by the lag-1 autocorrelation [RILEY2004], 2 to -2. @return
+/** Noise type at averaging factor m, 2 to -2: the one whose lag-1 autocorrelation of (differenced)
+ *  means is next to the record's, as in [RILEY2004]. @return
  *  IMK_ERROR_TOO_SHORT unless n/m >= 30; IMK_ERROR_NOT_FINITE when squares of the samples overflow
  */
 IMK_API imk_status imk_allan_noise_type(size_t n, const double *sums, size_t m,
@@ -174,6 +175,9 @@ typedef struct imk_allan_settings {
      *  false: those of imk_allan_edf_exact(). */
     bool greenhall_riley;
     imk_allan_bias_removal bias;
+    /** Point of the next shorter averaging factor, if it was computed in an earlier call; its type
+     *  is where the types of this call start. NULL (default): there is none. */
+    const struct imk_allan_point *before;
     void *workspace; /**< MTOT, HTOT and Theo1 only: imk_allan_workspace_size() */
     size_t workspace_size;
 } imk_allan_settings;
@@ -187,7 +191,8 @@ typedef struct imk_allan_point {
     double deviation, lower, upper; /**< [unit of the rate]; TDEV: times the interval */
     double edf;                     /**< equivalent degrees of freedom */
     size_t count;                   /**< squares averaged */
-    /** Noise type used for edf; that of the last factor with enough clusters. */
+    /** Noise type used for edf. Below 30 clusters (n/m) it is that of the factor before, below 100
+     *  clusters no bluer than that; phase noise is not found behind noise of the rate. */
     imk_power_law type;
 } imk_allan_point;
 

@@ -45,65 +45,6 @@ void imk_allan_interval(double deviation, double edf, double confidence, double 
     *upper = deviation * sqrt(edf / imk_chi_square_quantile(tail, edf));
 }
 
-/* Lag-1 autocorrelation of the d-th differences of cluster means y_i = s[(i+1)m] - s[im]. */
-static double lag_one(size_t clusters, const double *sums, size_t m, int d)
-{
-    static const double binomial[4][4] = {{1}, {1, -1}, {1, -2, 1}, {1, -3, 3, -1}};
-    const size_t count = clusters - (size_t)d;
-    double mean = 0, product = 0, square = 0, previous = 0;
-    for (int pass = 0; pass < 2; pass++)
-        for (size_t i = 0; i < count; i++) {
-            double z = 0;
-            for (size_t j = 0; j <= (size_t)d; j++)
-                z += binomial[d][j] *
-                     (sums[(i + (size_t)d - j + 1) * m] - sums[(i + (size_t)d - j) * m]);
-            if (pass == 0) {
-                mean += z / (double)count;
-            } else {
-                z -= mean;
-                square += z * z;
-                product += i > 0 ? z * previous : 0;
-                previous = z;
-            }
-        }
-    return square > 0 ? product / square : 0;
-}
-
-/* [RILEY2004]: difference the cluster means until their lag-1 autocorrelation r is that of a
- * stationary fractional noise, delta = r/(1 + r) < 1/4; then alpha = -2 (delta + d). */
-static imk_status noise_type(size_t n, const double *sums, size_t m, imk_power_law lowest,
-                             imk_power_law *type)
-{
-    const size_t clusters = m > 0 ? n / m : 0;
-    const int most = lowest < IMK_RANDOM_WALK_RATE ? 3 : 2;
-    if (clusters < 30)
-        return IMK_ERROR_TOO_SHORT;
-    double delta = 0;
-    int d = 0;
-    for (;; d++) {
-        const double r = lag_one(clusters, sums, m, d);
-        delta = r / (1 + r);
-        if (delta < 0.25 || d == most)
-            break;
-    }
-    if (isnan(delta))
-        return IMK_ERROR_NOT_FINITE;
-    const double alpha = floor(-2 * (delta + d) + 0.5);
-    *type = (imk_power_law)(alpha > 2 ? 2 : alpha < (double)lowest ? (double)lowest : alpha);
-    return IMK_OK;
-}
-
-imk_status imk_allan_noise_type(size_t n, const double *sums, size_t m, imk_power_law *type)
-{
-    return noise_type(n, sums, m, IMK_RANDOM_WALK_RATE, type);
-}
-
-imk_status imk_allan_noise_type_for(imk_allan_statistic statistic, size_t n, const double *sums,
-                                    size_t m, imk_power_law *type)
-{
-    return noise_type(n, sums, m, imki_allan_lowest_type(statistic), type);
-}
-
 /* Factors whose variances fit on the stack: enough for octaves to share one walk. */
 enum { PORTION = 64 };
 
@@ -182,11 +123,12 @@ imk_status imk_allan_points(const imk_allan_settings *settings, size_t n, const 
     point_work work = {settings->statistic, n, sums, points};
     imk_execute(executor, factor_count, type_item, &work);
 
-    imk_power_law type = IMK_WHITE_RATE;
+    const imk_power_law *before = settings->before ? &settings->before->type : NULL;
     for (size_t i = 0; i < factor_count; i++) {
         imk_allan_point *p = &points[i];
-        type = p->edf > 0 ? p->type : type;
+        const imk_power_law type = imki_allan_type_at(p->edf > 0 ? n / p->m : 0, p->type, before);
         p->type = type;
+        before = &p->type;
         p->edf = degrees_of_freedom(settings->statistic, type, settings->greenhall_riley, n, p->m);
         unbias(settings, n, sums, p);
         imk_allan_interval(p->deviation, p->edf, settings->confidence, &p->lower, &p->upper);

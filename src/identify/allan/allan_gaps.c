@@ -3,6 +3,7 @@
  * is there, and its holes by length; then one averaging factor after another
  * (allan_gaps_point.c). */
 #include "allan_gaps_internal.h"
+#include "allan_internal.h"
 #include "base/workspace_internal.h"
 #include "identify/records/screen_internal.h"
 #include "imukit/elementary.h"
@@ -93,47 +94,41 @@ static void gap_item(void *context, size_t item)
     w->estimates[item] = imki_gap_estimate_at(w->record, w->robust, w->factors[item]);
 }
 
-/* Without a missing sample: the ordinary deviations, to the last bit, a batch at a time. The last
- * factor whose noise type can be told leads every batch, for those behind it. */
+/* Without a missing sample: the ordinary deviations, to the last bit, a batch at a time. */
 static imk_status complete_record(const imk_allan_gaps_settings *settings, size_t n,
                                   const double *rate, double *sums, size_t factor_count,
                                   const size_t *factors, imk_allan_gap_point *points,
                                   const imk_executor *executor)
 {
-    enum { TOGETHER = 63 };
-    imk_allan_point point[TOGETHER + 1];
-    size_t factor[TOGETHER + 1], told = 0;
+    enum { TOGETHER = 64 };
+    imk_allan_point point[TOGETHER];
     imk_allan_settings ordinary = imk_allan_default();
     ordinary.confidence = settings->confidence;
     imk_allan_sums(n, rate, sums, executor);
     for (size_t i = 0, size; i < factor_count; i += size) {
-        const size_t lead = told > 0;
-        factor[0] = told;
-        for (size = 0; size < TOGETHER && i + size < factor_count; size++) {
-            factor[lead + size] = factors[i + size];
-            told = factors[i + size] <= n / 30 ? factors[i + size] : told;
-        }
+        size = factor_count - i < TOGETHER ? factor_count - i : TOGETHER;
+        ordinary.before = i > 0 ? &points[i - 1].point : NULL;
         const imk_status status =
-            imk_allan_points(&ordinary, n, sums, lead + size, factor, point, executor);
+            imk_allan_points(&ordinary, n, sums, size, factors + i, point, executor);
         if (status != IMK_OK)
             return status;
         for (size_t k = 0; k < size; k++)
             points[i + k] = (imk_allan_gap_point){
-                .point = point[lead + k], .used = 1, .fullness = 1, .resolved = true};
+                .point = point[k], .used = 1, .fullness = 1, .resolved = true};
     }
     return IMK_OK;
 }
 
-/* An estimate becomes a deviation with its interval. `type` is that of the factor before, which
- * stays where it could not be told. */
+/* An estimate becomes a deviation with its interval. `before`: the type of the factor before. */
 static imk_allan_gap_point finish(const imk_allan_gaps_settings *settings, size_t n,
-                                  const imki_gap_estimate *e, imk_power_law *type)
+                                  const imki_gap_estimate *e, const imk_power_law *before)
 {
-    /* Noise gets no bluer than white again with time, but by chance where clusters are few. */
-    const imk_power_law bluest = *type > IMK_WHITE_RATE ? *type : IMK_WHITE_RATE;
-    if (e->told && e->share > 0)
-        *type = e->type < bluest ? e->type : bluest;
-    imk_allan_gap_point p = {.point = {.m = e->m, .count = e->count, .type = *type},
+    const double clusters = e->used * (double)n / (double)e->m;
+    const size_t telling =
+        clusters > IMKI_ALLAN_CLUSTERS_MIN ? (size_t)clusters : IMKI_ALLAN_CLUSTERS_MIN;
+    const bool told = e->told && e->share > 0;
+    const imk_power_law type = imki_allan_type_at(told ? telling : 0, e->type, before);
+    imk_allan_gap_point p = {.point = {.m = e->m, .count = e->count, .type = type},
                              .used = e->used,
                              .fullness = e->fullness,
                              .correction = e->correction};
@@ -142,7 +137,7 @@ static imk_allan_gap_point finish(const imk_allan_gaps_settings *settings, size_
         q->deviation = q->lower = q->upper = q->edf = (double)NAN;
         return p;
     }
-    const double of_all = e->share * imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, *type, n, e->m);
+    const double of_all = e->share * imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, type, n, e->m);
     const double diagnostic =
         e->correction_error * e->correction_error / (e->variance * e->variance);
     const double edf = 2 / (2 / fmax(of_all, 1) + diagnostic);
@@ -205,7 +200,7 @@ imk_status imk_allan_gaps_points(const imk_allan_gaps_settings *settings, size_t
     if (record.long_holes)
         imki_gap_take_lags(&record);
     imki_gap_estimate *estimates = (void *)scratch;
-    imk_power_law type = IMK_WHITE_PHASE;
+    const imk_power_law *before = NULL;
     for (size_t first = 0; first < factor_count; first += BATCH) {
         const size_t count = factor_count - first < BATCH ? factor_count - first : BATCH;
         gap_work work = {&record, settings->robust, factors + first, estimates};
@@ -213,7 +208,8 @@ imk_status imk_allan_gaps_points(const imk_allan_gaps_settings *settings, size_t
         for (size_t i = 0; i < count; i++) {
             if (estimates[i].count > 0 && !(estimates[i].variance < HUGE_VAL))
                 return IMK_ERROR_NOT_FINITE;
-            points[first + i] = finish(settings, n, &estimates[i], &type);
+            points[first + i] = finish(settings, n, &estimates[i], before);
+            before = &points[first + i].point.type;
         }
     }
     return IMK_OK;

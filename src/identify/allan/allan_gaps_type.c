@@ -3,23 +3,22 @@
  * cluster means [RILEY2004], over those clusters that hold enough samples and have such neighbours.
  */
 #include "allan_gaps_internal.h"
+#include "allan_internal.h"
 
 #include <math.h>
-
-enum { NEIGHBOURS_MIN = 30 };
 
 /* Walks through the d-th differences of neighbouring cluster means. */
 typedef struct difference_walk {
     const imki_gap_record *r;
     size_t m, least, from;
     int order, known; /* clusters in a row so far */
-    double past[3];   /* their means, the last one first */
+    double past[2];   /* their means, the last one first */
 } difference_walk;
 
 /* The next difference; `follows` says that it follows the one before at once. False at the end. */
 static bool next_difference(difference_walk *w, double *value, bool *follows)
 {
-    static const double binomial[3][3] = {{1, 0, 0}, {1, -1, 0}, {1, -2, 1}};
+    static const double binomial[2][2] = {{1, 0}, {1, -1}};
     for (; w->from + w->m <= w->r->n;) {
         const size_t from = w->from, to = w->from += w->m;
         const uint32_t there = w->r->counts[to] - w->r->counts[from];
@@ -27,7 +26,6 @@ static bool next_difference(difference_walk *w, double *value, bool *follows)
             w->known = 0;
             continue;
         }
-        w->past[2] = w->past[1];
         w->past[1] = w->past[0];
         w->past[0] = (w->r->sums[to] - w->r->sums[from]) / (double)there;
         if (++w->known <= w->order)
@@ -64,22 +62,19 @@ static size_t lag_one(const imki_gap_record *r, size_t m, size_t least, int orde
     return neighbours;
 }
 
-/* Differences until delta = r/(1 + r) < 1/4; then alpha = -2 (delta + d). No type where squares
- * overflow. */
+/* As for a complete record (allan_type.c). No type where squares overflow. */
 bool imki_gap_noise_type(const imki_gap_record *record, size_t m, size_t least, imk_power_law *type)
 {
-    double delta = 0, r = 0;
+    double r = 0;
     int d = 0;
     for (;; d++) {
-        if (lag_one(record, m, least, d, &r) + (size_t)d + 1 < NEIGHBOURS_MIN)
+        if (lag_one(record, m, least, d, &r) + (size_t)d + 1 < IMKI_ALLAN_CLUSTERS_MIN)
             return false;
-        delta = r / (1 + r);
-        if (delta < 0.25 || d == 2)
+        if (r / (1 + r) < 0.25 || d == 1)
             break;
     }
-    if (isnan(delta))
+    if (isnan(r))
         return false;
-    const double alpha = floor(-2 * (delta + d) + 0.5);
-    *type = (imk_power_law)(alpha > 2 ? 2 : alpha < -2 ? -2 : alpha);
+    *type = imki_allan_nearest_type(r, d, m, IMK_RANDOM_WALK_RATE);
     return true;
 }

@@ -98,6 +98,15 @@ double imki_allan_edf_total(imk_allan_statistic statistic, imk_power_law type, s
 double imki_allan_edf_published(imk_allan_statistic statistic, imk_power_law type, size_t n,
                                 size_t m);
 
+/* allan_type.c: noise type of a record of n samples at factor m. `found` is what the clusters of m
+ * show (read only where there are IMKI_ALLAN_CLUSTERS_MIN), `before` the type at the next shorter
+ * factor; NULL: none. */
+enum { IMKI_ALLAN_CLUSTERS_MIN = 30 };
+imk_power_law imki_allan_type_at(size_t clusters, imk_power_law found, const imk_power_law *before);
+/* The type whose lag-1 autocorrelation of d-th differences of means of m is next to r, no lower
+ * than `lowest`. */
+imk_power_law imki_allan_nearest_type(double r, int d, size_t m, imk_power_law lowest);
+
 /* Lowest power law for which a statistic converges. */
 imk_power_law imki_allan_lowest_type(imk_allan_statistic statistic);
 

@@ -5,6 +5,7 @@
  * 2 IMKI_STRIDE_ONE of those before it, and each window is counted where it ends. Longer ones come
  * from the means of `block` samples as a record of its own, at m/block: windows start every block,
  * and their degrees of freedom are those of that record. */
+#include "identify/allan/allan_internal.h"
 #include "long_record_internal.h"
 
 #include <math.h>
@@ -79,11 +80,12 @@ static double short_variance(const imk_identify_record *r, size_t m)
 }
 
 static imk_allan_point short_point(const imk_identify_record *r, size_t m, size_t neighbour,
-                                   double confidence)
+                                   double confidence, const imk_power_law *before)
 {
     const double variance = short_variance(r, m), beside = short_variance(r, neighbour);
     imk_allan_point point = {.m = m, .deviation = sqrt(variance)};
-    point.type = type_of_slope(log(beside / variance) / log((double)neighbour / (double)m));
+    const double slope = log(beside / variance) / log((double)neighbour / (double)m);
+    point.type = imki_allan_type_at(r->samples / m, type_of_slope(slope), before);
     for (size_t f = 0; f < r->short_count; f++)
         if (r->short_factor[f] == m)
             point.count = r->short_windows[f];
@@ -118,10 +120,11 @@ size_t imki_record_allan_points(const imk_identify_record *r, const double *sums
                                      short_ + 1 < count && factors[short_ + 1] < IMKI_STRIDE_ONE
                                          ? factors[short_ + 1]
                                          : factors[short_ - 1],
-                                     confidence);
+                                     confidence, short_ > 0 ? &points[short_ - 1].type : NULL);
     const size_t longer = long_factors(r->block, last, count, factors);
     imk_allan_settings settings = imk_allan_default();
     settings.confidence = confidence;
+    settings.before = short_ > 0 ? &points[short_ - 1] : NULL;
     if (longer > 0 && imk_allan_points(&settings, r->mean_count, sums, longer, factors,
                                        points + short_, NULL) != IMK_OK)
         return short_;

@@ -10,34 +10,6 @@
 /* Factors evaluated between two looks at the clock. */
 enum { PORTION = 128 };
 
-/* Clusters the noise type needs (imk_allan_noise_type); longer ones take the type of the last
- * factor that has them, which therefore leads every later portion. */
-enum { CLUSTERS_MINIMUM = 30 };
-
-static size_t last_typed_factor(size_t n, size_t factor_count, const size_t *factors)
-{
-    size_t last = factors[0];
-    for (size_t i = 0; i < factor_count && n / factors[i] >= CLUSTERS_MINIMUM; i++)
-        last = factors[i];
-    return last;
-}
-
-static imk_status compute_portion(const imk_allan_settings *settings, size_t n, const double *sums,
-                                  size_t anchor, size_t count, const size_t *factors,
-                                  imk_allan_point *point, const imk_executor *executor)
-{
-    size_t m[PORTION + 1];
-    imk_allan_point result[PORTION + 1];
-    size_t lead = factors[0] > anchor ? 1 : 0;
-    m[0] = anchor;
-    for (size_t i = 0; i < count; i++)
-        m[lead + i] = factors[i];
-    imk_status status = imk_allan_points(settings, n, sums, lead + count, m, result, executor);
-    for (size_t i = 0; status == IMK_OK && i < count; i++)
-        point[i] = result[lead + i];
-    return status;
-}
-
 static bool curve_room(size_t count, bool gaps, const imk_allocator *allocator,
                        imk_allan_curve *curve)
 {
@@ -83,12 +55,13 @@ static imk_status compute_points(const imk_allan_settings *settings, size_t n, c
                                  size_t factor_count, const size_t *factors, const char *stage,
                                  const imk_job *job, imk_allan_point *point)
 {
-    const size_t anchor = last_typed_factor(n, factor_count, factors);
+    imk_allan_settings with = *settings;
     imk_status status = IMK_OK;
     for (size_t done = 0; done < factor_count && status == IMK_OK; done += PORTION) {
         const size_t count = factor_count - done < PORTION ? factor_count - done : PORTION;
-        status = compute_portion(settings, n, sums, anchor, count, factors + done, point + done,
-                                 job->executor);
+        with.before = done > 0 ? &point[done - 1] : NULL;
+        status =
+            imk_allan_points(&with, n, sums, count, factors + done, point + done, job->executor);
         if (status == IMK_OK && stage)
             status = imki_job_progress(job, stage, "points", done + count, factor_count, NULL);
     }
