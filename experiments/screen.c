@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Screening of simulated records: false alarms and what is found.
  *
- * usage: screen [records] [seed]
+ * usage: screen [records] [seed] [parts: letters of stfj, speed, trends, faults, jumps]
  *
  * First the faults: sound records of several noises, and the same with 0.1 % of samples 50 sigma
  * off, single or in bursts of ten. Then the warm-up and the temperature: how often slow noise is
  * called one (16384 samples a record), and how often a true one is seen, with the spread of its
- * amplitude and time in stated standard deviations. */
+ * amplitude and time in stated standard deviations. Then jumps of the level at a significance of
+ * 1e-3/6, in whole records and in such with four holes: how often slow noise is called one, and how
+ * often one of 4 or 8 B is found. */
 #include "imukit/imukit.h"
 #include "imukit/record_screen.h"
 
@@ -186,6 +188,82 @@ static void trends(uint32_t records, imk_random random, void *workspace, size_t 
     }
 }
 
+/* Four holes that take a fifth of the record, with a few samples in them. */
+static void make_holes(imk_random random, uint32_t run, double *rate)
+{
+    uint32_t word[8];
+    imk_random_words(random, imk_stream(run, 7, 0, 0), 0, 8, word);
+    for (size_t h = 0; h < 4; h++) {
+        const size_t from = h * SAMPLES / 4 + word[2 * h] % (SAMPLES / 6);
+        const size_t length = word[2 * h + 1] % (SAMPLES / 10);
+        for (size_t i = from; i < from + length && i < SAMPLES; i++)
+            if (i % 997 > 3)
+                rate[i] = (double)NAN;
+    }
+}
+
+static void jumps(uint32_t records, imk_random random, void *workspace, size_t size)
+{
+    static const struct {
+        const char *name;
+        double white, flicker, walk, markov, time, ramp, warm_up;
+    } cases[] = {{"N", 1, 0, 0, 0, 1, 0, 0},
+                 {"N + B", 1, 0.1, 0, 0, 1, 0, 0},
+                 {"B", 0.1, 1, 0, 0, 1, 0, 0},
+                 {"N + B + K", 1, 0.1, 0.001, 0, 1, 0, 0},
+                 {"N + B + strong K", 1, 0.1, 0.03, 0, 1, 0, 0},
+                 {"K", 0, 0, 1, 0, 1, 0, 0},
+                 {"N + GM of 100", 1, 0, 0, 1, 100, 0, 0},
+                 {"N + GM of 3000", 1, 0, 0, 1, 3000, 0, 0},
+                 {"N + strong GM of 1000", 1, 0, 0, 10, 1000, 0, 0},
+                 {"N + B + ramp", 1, 0.1, 0, 0, 1, 1e-4, 0},
+                 {"N + B + strong ramp", 1, 0.1, 0, 0, 1, 1e-2, 0},
+                 {"N + B, warm-up 2", 1, 0.1, 0, 0, 1, 0, 2},
+                 {"N + B, warm-up 100", 1, 0.1, 0, 0, 1, 0, 100}};
+    static double rate[SAMPLES], holed[SAMPLES];
+    static imk_gauss_markov_state state;
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        size_t called = 0, with_holes = 0, found[2] = {0, 0}, placed[2] = {0, 0};
+        for (uint32_t run = 0; run < records; run++) {
+            imk_screen_settings settings = imk_screen_default();
+            settings.significance = 1e-3 / 6;
+            settings.dt = 1;
+            imk_screen s;
+            add_noise(cases[c].white, cases[c].flicker, cases[c].walk, random, run, SAMPLES, rate);
+            const imk_gauss_markov markov = {cases[c].markov, cases[c].time};
+            if (markov.sigma > 0 && imk_gauss_markov_start(&state, markov, 1, random,
+                                                           imk_stream(run, 4, 0, 0)) == IMK_OK)
+                imk_gauss_markov_add(&state, SAMPLES, rate);
+            for (size_t i = 0; i < SAMPLES; i++)
+                rate[i] +=
+                    9.8 + cases[c].ramp * (double)i + cases[c].warm_up * exp(-(double)i / 5000);
+            if (imk_screen_channel(&settings, SAMPLES, rate, &s, workspace, size, NULL) == IMK_OK)
+                called += s.steps.count > 0;
+            memcpy(holed, rate, sizeof rate);
+            make_holes(random, run, holed);
+            if (imk_screen_channel(&settings, SAMPLES, holed, &s, workspace, size, NULL) == IMK_OK)
+                with_holes += s.steps.count > 0;
+            const double unit = cases[c].flicker > 0 ? cases[c].flicker : 0.1;
+            const size_t place = SAMPLES / 5 + run * 97 % (SAMPLES / 2);
+            for (int k = 0; k < 2; k++) {
+                for (size_t i = 0; i < SAMPLES; i++)
+                    holed[i] = rate[i] + (i >= place ? (k == 0 ? 4 : 8) * unit : 0);
+                if (imk_screen_channel(&settings, SAMPLES, holed, &s, workspace, size, NULL) !=
+                    IMK_OK)
+                    continue;
+                found[k] += s.steps.count > 0;
+                placed[k] += s.steps.count > 0 &&
+                             fabs((double)s.steps.first - (double)place) < SAMPLES / 256;
+            }
+        }
+        const double n = (double)records;
+        printf("%-24s jumps called in %.4f of records, with holes %.4f; one of 4 B found in %.3f "
+               "(at its place %.3f), of 8 B in %.3f (%.3f)\n",
+               cases[c].name, (double)called / n, (double)with_holes / n, (double)found[0] / n,
+               (double)placed[0] / n, (double)found[1] / n, (double)placed[1] / n);
+    }
+}
+
 static void speed(imk_random random)
 {
     enum { LONG = 1000000 };
@@ -217,9 +295,15 @@ int main(int argc, char **argv)
     void *workspace = malloc(size);
     if (!workspace)
         return 1;
-    speed(random);
-    trends(records, random, workspace, size);
-    faults(records / 10, random, workspace, size);
+    const char *parts = argc > 3 ? argv[3] : "stfj";
+    if (strchr(parts, 's'))
+        speed(random);
+    if (strchr(parts, 't'))
+        trends(records, random, workspace, size);
+    if (strchr(parts, 'f'))
+        faults(records / 10, random, workspace, size);
+    if (strchr(parts, 'j'))
+        jumps(records, random, workspace, size);
     free(workspace);
     return 0;
 }

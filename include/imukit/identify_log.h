@@ -5,8 +5,8 @@
  *
  *  The job loads the record, screens its samples (record_screen.h) and identifies them
  *  (identify.h). A record of more than IMK_IDENTIFY_RECORD_ADVISED rows is not held in memory but
- *  identified in one pass (identify_record.h), if its source can be rewound and its samples are
- *  equally spaced. */
+ *  screened and identified in one pass (identify_record.h), if its source can be rewound and its
+ *  samples are equally spaced. */
 #ifndef IMUKIT_IDENTIFY_LOG_H
 #define IMUKIT_IDENTIFY_LOG_H
 
@@ -49,7 +49,7 @@ typedef struct imk_identify_log {
     imk_identify_origin origin;
     imk_even_record record; /**< the record; without samples if it was not held in memory */
     double duration;        /**< length of the record [s] */
-    bool screened;          /**< false if the record was not held in memory */
+    bool screened;          /**< true for one record: `screen` says what was found */
     imk_identification result[IMK_LOG_COLUMNS_MAX];
     imk_screen screen[IMK_LOG_COLUMNS_MAX];
     imk_spectral_summary *summary[IMK_LOG_COLUMNS_MAX]; /**< only with settings.summarise */

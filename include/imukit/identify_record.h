@@ -47,6 +47,22 @@ IMK_API imk_status imk_identify_record_begin(size_t expected, imk_identify_recor
 IMK_API imk_status imk_identify_record_add(imk_identify_record *record, size_t count,
                                            const double *samples, imk_error *error);
 
+/** Continue a record twice: a copy of what was gathered, in `memory` of imk_identify_record_size()
+ *  bytes for the same number of samples.
+ *  @return errors of imk_identify_record_begin() */
+IMK_API imk_status imk_identify_record_copy(const imk_identify_record *record,
+                                            imk_identify_record **copy, void *memory,
+                                            size_t memory_size, imk_error *error);
+
+/** Part of the mean of a record at a time [s] from its first sample [unit]. */
+typedef double (*imk_record_trend)(const void *context, double time);
+/** Subtract a slow part of the mean, after the last sample was added and before
+ *  imk_identify_record_finish(). It is taken from the means of 32 samples or more, so it must be
+ *  slow against 65536 samples: a change by D over so many leaves 3.3e-4 D^2 at most in the power of
+ *  the lowest frequency that the segments are used for. */
+IMK_API void imk_identify_record_subtract(imk_identify_record *record, double dt,
+                                          imk_record_trend trend, const void *context);
+
 /** Workspace for imk_identify_record_finish(): 2 MB, and about 34 bytes for each mean that is kept
  *  (of 32 samples or more). */
 IMK_API size_t imk_identify_record_workspace_size(const imk_identify_record *record);

@@ -89,6 +89,38 @@ imk_status imk_identify_record_begin(size_t expected, imk_identify_record **reco
     return IMK_OK;
 }
 
+imk_status imk_identify_record_copy(const imk_identify_record *record, imk_identify_record **copy,
+                                    void *memory, size_t memory_size, imk_error *error)
+{
+    const size_t segment = (record->sizes.segment + 1) * sizeof(double);
+    if (!memory || !copy)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", NULL, NULL);
+    if (memory_size < imki_record_memory(&record->sizes))
+        return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", NULL,
+                             "imk_identify_record_size() bytes");
+    imk_identify_record *r = imki_record_start(&record->sizes, memory), places = *r;
+    *r = *record;
+    r->buffer = memcpy(places.buffer, record->buffer, segment);
+    r->power = memcpy(places.power, record->power, segment);
+    r->means = memcpy(places.means, record->means, record->mean_count * sizeof(double));
+    r->sums = memcpy(places.sums, record->sums, sums_size(&record->sizes) * sizeof(double));
+    r->spectrum = places.spectrum;
+    r->transform = places.transform;
+    *copy = r;
+    return IMK_OK;
+}
+
+void imk_identify_record_subtract(imk_identify_record *r, double dt, imk_record_trend trend,
+                                  const void *context)
+{
+    imki_record_flush(r);
+    for (size_t i = 0; i < r->mean_count; i++) {
+        const double time = ((double)i + 0.5) * (double)r->block * dt;
+        const double part = trend(context, time);
+        r->means[i] -= part * r->scale;
+    }
+}
+
 /* Mean of the first chunk and a power of two that brings its span near 1, so that a constant
  * (gravity) costs no digits and no square overflows or vanishes. */
 static void start(imk_identify_record *r, size_t count, const double *samples)

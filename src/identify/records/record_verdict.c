@@ -6,6 +6,9 @@
 
 #include <math.h>
 
+/* A thousandth, for a record of six channels. */
+#define WARM_UP_FALSE (1e-3 / 6)
+
 unsigned imki_record_verdict(size_t n, const double *samples, double resolution, double deviation)
 {
     unsigned verdict = 0;
@@ -29,10 +32,8 @@ unsigned imki_record_verdict(size_t n, const double *samples, double resolution,
     /* Independent samples repeat in about resolution/(2 sqrt(pi) deviation) of steps. */
     if ((double)repeats > 0.4 * (double)present && resolution < 0.5 * deviation)
         verdict |= IMK_VERDICT_FROZEN;
-    imk_screen_settings settings = imk_screen_default();
-    settings.dt = 1;
     imk_screen trend = {0};
-    imki_trend_find(&settings, n, samples, &trend);
+    imki_trend_find(WARM_UP_FALSE, n, samples, &trend);
     if (trend.warm_up)
         verdict |= IMK_VERDICT_WARM_UP;
     return verdict;

@@ -36,17 +36,13 @@ imki_outlier_rule imki_outlier_rule_find(size_t n, const double *samples, double
 imk_screen_count imki_outliers_find(size_t n, const double *samples, const imki_outlier_rule *rule,
                                     double *marked, double *largest);
 
-/* screen_stuck.c: runs of one value longer than `longest`, and samples at the limits of range. */
-size_t imki_stuck_limit(size_t n, const double *samples, double false_alarm, double *repeated);
-imk_screen_count imki_stuck_find(size_t n, const double *samples, size_t limit, double *marked,
-                                 size_t *longest);
-
-/* screen_steps.c: sudden lasting changes of the level, from medians of blocks. */
-void imki_steps_find(size_t n, const double *samples, double significance, imk_screen *found,
-                     double *scratch);
-
 /* screen_trend.c: warm-up and temperature against slow noise. */
-void imki_trend_find(const imk_screen_settings *settings, size_t n, const double *samples,
-                     imk_screen *found);
+enum { IMKI_TREND_PARTS = 256 };
+/* Of `parts` means, at most IMKI_TREND_PARTS, of so many samples each, and those of the temperature
+ * or NULL. */
+void imki_trend_of_means(double significance, size_t parts, size_t samples, double dt,
+                         const double *mean, const double *temperature, imk_screen *found);
+/* A warm-up among samples; times are in samples. */
+void imki_trend_find(double significance, size_t n, const double *samples, imk_screen *found);
 
 #endif

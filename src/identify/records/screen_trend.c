@@ -42,14 +42,14 @@ static size_t part_begin(const trend_work *w, size_t part)
 }
 
 /* Means over what is there; parts without anything lie on a line between their neighbours. */
-static bool part_means(const trend_work *w, const double *values, const double *with, double *mean)
+static bool part_means(const trend_work *w, const double *values, double *mean)
 {
     size_t last = PARTS;
     for (size_t p = 0; p < w->parts; p++) {
         double sum = 0, shift = 0;
         size_t count = 0;
         for (size_t i = part_begin(w, p); i < part_begin(w, p + 1); i++) {
-            if (!imki_is_there(values[i]) || (with && !imki_is_there(with[i])))
+            if (!imki_is_there(values[i]))
                 continue;
             shift = count++ == 0 ? values[i] : shift;
             sum += values[i] - shift;
@@ -296,13 +296,13 @@ static double fit_temperature(trend_work *w, size_t degree, const double *amount
     return fit(w, ROUNDS);
 }
 
-static void find_temperature(trend_work *w, const imk_screen_settings *settings,
-                             const double *samples, imk_screen *found)
+static void find_temperature(trend_work *w, double significance, const double *temperature,
+                             imk_screen *found)
 {
     double *mean = w->spectrum, *square = w->trend[0]; /* no trend is there yet */
     double low = HUGE_VAL, high = -HUGE_VAL, centre = 0;
-    if (!part_means(w, settings->temperature, samples, mean))
-        return;
+    for (size_t p = 0; p < w->parts; p++)
+        mean[p] = temperature[p];
     for (size_t p = 0; p < w->parts; p++) {
         low = fmin(low, mean[p]);
         high = fmax(high, mean[p]);
@@ -324,7 +324,7 @@ static void find_temperature(trend_work *w, const imk_screen_settings *settings,
     const double second = gain_probability(2 * (two - one), 0);
     found->temperature_reference = centre;
     found->temperature_probability = fmin(first, 2 * second);
-    size_t degree = second < settings->significance ? 2 : first < settings->significance ? 1 : 0;
+    size_t degree = second < significance ? 2 : first < significance ? 1 : 0;
     fit_temperature(w, degree, amount);
     if (degree > 0)
         fit_anew(w);
@@ -344,32 +344,48 @@ static void take_temperature(const trend_work *w, imk_screen *found)
     found->temperature_curvature_sigma = sqrt(w->covariance[w->trends + 1]);
 }
 
-void imki_trend_find(const imk_screen_settings *settings, size_t n, const double *samples,
-                     imk_screen *found)
+static void find_trends(trend_work *w, double significance, const double *mean,
+                        const double *temperature, imk_screen *found)
 {
-    trend_work work, *w = &work;
-    const size_t parts = n / 8 < PARTS ? n / 8 : PARTS;
-    double *mean = w->spectrum;
-    if (parts < 16)
-        return;
-    w->parts = parts;
-    w->n = n;
-    w->dt = settings->dt;
-    w->trends = 0;
-    if (!part_means(w, samples, settings->temperature, mean))
-        return;
     set_spectra(w);
     transform(w, mean, w->coefficient);
     double power = 0;
-    for (size_t k = 1; k < parts; k++)
+    for (size_t k = 1; k < w->parts; k++)
         power += w->coefficient[k] * w->coefficient[k];
     if (!(power > 0))
         return;
     start(w);
-    if (settings->temperature)
-        find_temperature(w, settings, samples, found);
-    find_warm_up(w, settings->significance, found);
+    if (temperature)
+        find_temperature(w, significance, temperature, found);
+    find_warm_up(w, significance, found);
     if (!found->warm_up) /* the exponential was fitted beside: without it again */
         fit(w, ROUNDS);
     take_temperature(w, found);
+}
+
+void imki_trend_of_means(double significance, size_t parts, size_t samples, double dt,
+                         const double *mean, const double *temperature, imk_screen *found)
+{
+    trend_work work, *w = &work;
+    if (parts < 16)
+        return;
+    w->parts = parts;
+    w->n = parts * samples;
+    w->dt = dt;
+    w->trends = 0;
+    find_trends(w, significance, mean, temperature, found);
+}
+
+void imki_trend_find(double significance, size_t n, const double *samples, imk_screen *found)
+{
+    trend_work work, *w = &work;
+    const size_t parts = n / 8 < PARTS ? n / 8 : PARTS;
+    if (parts < 16)
+        return;
+    w->parts = parts;
+    w->n = n;
+    w->dt = 1;
+    w->trends = 0;
+    if (part_means(w, samples, w->spectrum))
+        find_trends(w, significance, w->spectrum, NULL, found);
 }

@@ -27,18 +27,20 @@ static imk_status screen(channel_work *work, size_t channel, imk_error *error)
 {
     imk_identify_log *log = work->log;
     const size_t n = log->record.rows, size = imk_screen_workspace_size(n);
-    imk_screen_settings settings = imk_screen_default();
-    settings.dt = log->record.dt;
+    imk_screen_settings settings = imki_screen_settings(log);
     settings.temperature = log->record.temperature;
     double *samples = imk_even_record_data(&log->record, channel);
+    imk_screen *found = &log->screen[channel];
+    const unsigned what = log->settings.take_out & ~(unsigned)IMK_SCREEN_SATURATED;
+    size_t lost;
     void *workspace = imki_resize(&work->job->allocator, NULL, size);
     if (!workspace)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    const imk_status status =
-        imk_screen_channel(&settings, n, samples, &log->screen[channel], workspace, size, error);
-    imki_resize(&work->job->allocator, workspace, 0);
+    imk_status status = imk_screen_channel(&settings, n, samples, found, workspace, size, error);
     if (status == IMK_OK)
-        imk_screen_apply(&settings, &log->screen[channel], log->settings.take_out, n, samples);
+        status =
+            imk_screen_apply(&settings, found, what, n, samples, &lost, workspace, size, error);
+    imki_resize(&work->job->allocator, workspace, 0);
     return status;
 }
 
@@ -118,7 +120,6 @@ imk_status imki_identify_channels(imk_identify_log *log, const imk_job *job, imk
                                .factor_count = count,
                                .progress = job->progress,
                                .showing = ATOMIC_FLAG_INIT};
-        log->screened = true;
         imk_execute(job->executor, log->record.count, identify_one, work);
         status = IMK_OK;
     }

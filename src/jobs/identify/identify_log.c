@@ -60,6 +60,15 @@ bool imki_identify_settings(imk_identify_log *log, size_t channel, const imk_all
     return settings->summary != NULL;
 }
 
+imk_screen_settings imki_screen_settings(const imk_identify_log *log)
+{
+    imk_screen_settings settings = imk_screen_default();
+    settings.dt = log->record.dt;
+    settings.false_alarm /= (double)log->record.count;
+    settings.significance /= (double)log->record.count;
+    return settings;
+}
+
 imk_status imki_identify_explain(imk_identify_log *log, size_t channel, imk_status status,
                                  const imk_error *why, imk_error *error)
 {
@@ -98,6 +107,10 @@ static imk_status identify(imk_identify_log *log, const imk_record_source *sourc
         status = imki_identify_channels(log, job, error);
     if (status == IMK_OK && log->settings.from_allan)
         status = imki_identify_by_allan(log, job, error);
+    log->screened = status == IMK_OK;
+    for (size_t c = 0; log->screened && c < log->record.count; c++)
+        imk_screen_adjust(&log->screen[c], log->settings.take_out, log->settings.confidence,
+                          &log->result[c]);
     return status;
 }
 

@@ -11,6 +11,9 @@
 bool imki_identify_settings(imk_identify_log *log, size_t channel, const imk_allocator *allocator,
                             imk_identify_settings *settings);
 
+/* Settings of the screening of each channel: a thousandth for false alarms in all of them. */
+imk_screen_settings imki_screen_settings(const imk_identify_log *log);
+
 /* Why a channel could not be identified. @return status */
 imk_status imki_identify_explain(imk_identify_log *log, size_t channel, imk_status status,
                                  const imk_error *why, imk_error *error);

@@ -3,6 +3,7 @@
  * the block before are gathered, each on a thread. Rows are placed by record_grid.c, one at a time;
  * under another policy than IMK_GAPS_KEEP, a record with anything missing is loaded. */
 #include "identify_log_internal.h"
+#include "long_passage_internal.h"
 
 #include "jobs/allan/allan_curve_internal.h"
 #include "jobs/arena_internal.h"
@@ -11,7 +12,6 @@
 #include "jobs/record/record_repeats_internal.h"
 #include "jobs/record/record_stamps_internal.h"
 
-#include "imukit/identify_record.h"
 #include "imukit/samples.h"
 
 #include <math.h>
@@ -53,7 +53,8 @@ typedef struct long_record {
     size_t piece_count;
     piece *pieces;                   /* ROWS of them, for a record that is long */
     bool dirty[IMK_LOG_COLUMNS_MAX]; /* the block has missing values of this channel */
-    imk_identify_record *record[IMK_LOG_COLUMNS_MAX];
+    int temperature_column;          /* -1: none */
+    imki_passage passage[IMK_LOG_COLUMNS_MAX];
     imk_status status[IMK_LOG_COLUMNS_MAX];
     imk_error error[IMK_LOG_COLUMNS_MAX];
 } long_record;
@@ -62,7 +63,8 @@ typedef struct long_record {
 static bool make_block(long_record *s, row_block *block)
 {
     const imk_even_record *record = &s->log->record;
-    const size_t columns = record->count + (s->time_column >= 0 ? 1 : 0);
+    const size_t columns =
+        record->count + (s->time_column >= 0 ? 1 : 0) + (s->temperature_column >= 0 ? 1 : 0);
     double *place = imki_arena_room(&s->arena, columns * ROWS * sizeof *place);
     if (!place)
         return false;
@@ -70,6 +72,8 @@ static bool make_block(long_record *s, row_block *block)
         block->column[record->column[c]] = place;
     if (s->time_column >= 0)
         block->column[s->time_column] = place;
+    if (s->temperature_column >= 0)
+        block->column[s->temperature_column] = place + (s->time_column >= 0 ? ROWS : 0);
     return true;
 }
 
@@ -106,12 +110,20 @@ static const double *times_of(const long_record *s, const row_block *block)
     return s->stamps.time ? s->stamps.time + s->rows : block->column[s->time_column];
 }
 
+static void drop_impossible(size_t count, double *values)
+{
+    for (size_t i = 0; i < count; i++)
+        values[i] = fabs(values[i]) <= IMK_READING_MAX ? values[i] : (double)NAN;
+}
+
 /* Cut the block where samples are missing or rows are left out. */
 static void cut_block(long_record *s, const row_block *block)
 {
     imk_even_record *record = &s->log->record;
     const double *time = times_of(s, block);
     piece *last = NULL;
+    if (s->temperature_column >= 0)
+        drop_impossible(block->rows, block->column[s->temperature_column]);
     s->piece_count = 0;
     s->grid.rows = s->rows + block->rows;
     for (size_t row = 0; row < block->rows; row++) {
@@ -139,18 +151,20 @@ static bool all_readings(size_t count, const double *values)
     return all;
 }
 
-static imk_status add_piece(imk_identify_record *record, const piece *p, const double *data,
-                            imk_error *error)
+static imk_status add_piece(imki_passage *passage, const piece *p, const double *data,
+                            const double *temperature, imk_error *error)
 {
     double empty[EMPTY];
-    imk_status status = IMK_OK;
     for (size_t i = 0; i < EMPTY && i < p->missing; i++)
         empty[i] = (double)NAN;
-    for (size_t done = 0; done < p->missing && status == IMK_OK; done += EMPTY)
-        status = imk_identify_record_add(
-            record, p->missing - done < EMPTY ? p->missing - done : EMPTY, empty, error);
-    return status == IMK_OK ? imk_identify_record_add(record, p->count, data + p->first, error)
-                            : status;
+    for (size_t done = 0; done < p->missing; done += EMPTY)
+        imki_passage_add(passage, p->missing - done < EMPTY ? p->missing - done : EMPTY, empty,
+                         temperature ? empty : NULL);
+    imki_passage_add(passage, p->count, data + p->first,
+                     temperature ? temperature + p->first : NULL);
+    if (passage->status != IMK_OK && error)
+        *error = passage->error;
+    return passage->status;
 }
 
 /* Item 0 reads the next block, the others each take a channel of this one. */
@@ -164,11 +178,14 @@ static void pass_block(void *context, size_t item)
     const size_t channel = item - 1;
     const row_block *block = &s->block[s->current];
     double *data = block->column[s->log->record.column[channel]];
+    const double *temperature =
+        s->temperature_column >= 0 ? block->column[s->temperature_column] : NULL;
     s->dirty[channel] = !all_readings(block->rows, data);
-    for (size_t row = 0; row < block->rows && s->dirty[channel]; row++)
-        data[row] = fabs(data[row]) <= IMK_READING_MAX ? data[row] : (double)NAN;
+    if (s->dirty[channel])
+        drop_impossible(block->rows, data);
     for (size_t p = 0; p < s->piece_count && s->status[channel] == IMK_OK; p++)
-        s->status[channel] = add_piece(s->record[channel], &s->pieces[p], data, &s->error[channel]);
+        s->status[channel] =
+            add_piece(&s->passage[channel], &s->pieces[p], data, temperature, &s->error[channel]);
 }
 
 /* Rows of this block whose time, or a value of some channel, is missing. */
@@ -203,14 +220,13 @@ static bool is_even(const long_record *s)
 /* @return false where memory is exhausted, or the record asks for more than there is */
 static bool begin_records(long_record *s)
 {
-    const size_t expected = (size_t)expected_rows(s), bytes = imk_identify_record_size(expected);
+    const size_t expected = (size_t)expected_rows(s);
+    const imk_screen_settings screening = imki_screen_settings(s->log);
     s->pieces = imki_arena_room(&s->arena, ROWS * sizeof *s->pieces);
-    for (size_t c = 0; s->pieces && c < s->log->record.count; c++) {
-        void *memory = imki_arena_room(&s->arena, bytes);
-        if (!memory ||
-            imk_identify_record_begin(expected, &s->record[c], memory, bytes, NULL) != IMK_OK)
+    for (size_t c = 0; s->pieces && c < s->log->record.count; c++)
+        if (!imki_passage_begin(&s->passage[c], &screening, s->log->settings.take_out, expected,
+                                &s->arena, &s->job->allocator))
             return false;
-    }
     return s->pieces != NULL;
 }
 
@@ -242,13 +258,18 @@ static void finish_channel(void *context, size_t channel)
 {
     long_record *s = context;
     const imk_allocator *allocator = &s->job->allocator;
-    imk_identify_record *record = s->record[channel];
+    imki_passage *passage = &s->passage[channel];
     imk_error *error = &s->error[channel];
-    const size_t size = imk_identify_record_workspace_size(record);
-    void *workspace = imki_resize(allocator, NULL, size);
+    imk_identify_record *record = NULL;
+    imk_status status =
+        imki_passage_finish(passage, s->log->record.dt, &record, &s->log->screen[channel], error);
     imk_identify_settings settings;
-    imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    if (workspace && imki_identify_settings(s->log, channel, allocator, &settings))
+    const size_t size = record ? imk_identify_record_workspace_size(record) : 0;
+    void *workspace = status == IMK_OK ? imki_resize(allocator, NULL, size) : NULL;
+    if (status == IMK_OK &&
+        !(workspace && imki_identify_settings(s->log, channel, allocator, &settings)))
+        status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    if (status == IMK_OK)
         status = imk_identify_record_finish(record, &settings, &s->log->result[channel], workspace,
                                             size, error);
     imki_resize(allocator, workspace, 0);
@@ -258,6 +279,7 @@ static void finish_channel(void *context, size_t channel)
         status = imki_allan_curve_of(count, points, s->log->record.dt, allocator,
                                      &s->log->curve[channel]);
     }
+    imki_passage_end(passage);
     s->status[channel] = status;
 }
 
@@ -310,6 +332,7 @@ static bool begin(long_record *s, bool *touched)
         record->log.column[c] = s->source->columns[c];
     imk_even_record_choose(record);
     s->time_column = imk_record_find(s->source, IMK_QUANTITY_TIME, -1);
+    s->temperature_column = imk_record_find(s->source, IMK_QUANTITY_TEMPERATURE, -1);
     if (record->count == 0)
         return false;
     if (!make_block(s, &s->block[0]) || !make_block(s, &s->block[1])) {
@@ -413,6 +436,8 @@ static imk_status identify_once(imk_identify_log *log, const imk_record_source *
     if (status == IMK_OK && !*taken)
         status = forget(s, touched, error);
     imki_stamps_free(&s->stamps);
+    for (size_t c = 0; c < IMK_LOG_COLUMNS_MAX; c++) /* a record that is forgotten has none */
+        imki_passage_end(&s->passage[c]);
     imki_arena_free(&s->arena);
     imki_arena_free(&arena);
     return status;

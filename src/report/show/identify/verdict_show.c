@@ -107,7 +107,31 @@ static bool find_outliers(const imk_identify_log *log, size_t channel, imki_text
     imki_text_add(detail, "%zu, the largest %.3g %s or %.3g standard deviations off",
                   s->outliers.count, s->largest_outlier / unit.scale, unit.text,
                   s->noise > 0 ? s->largest_outlier / s->noise : (double)INFINITY);
-    return s->outliers.count > 0;
+    return s->outliers.count > 0 && !s->heavy_tails;
+}
+
+/* White noise with all samples, and without those far off. */
+static bool find_tails(const imk_identify_log *log, size_t channel, bool matter, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    const imk_estimate *white = &log->result[channel].term[IMK_NOISE_WHITE];
+    const imk_term_display term =
+        imk_channel_term(imk_even_record_column(&log->record, channel), IMK_NOISE_WHITE);
+    const bool matters = white->value * s->core < white->lower;
+    imki_text_add(detail, "%zu samples; %s %.4g %s, of most samples %.4g", s->outliers.count,
+                  term.name, white->value / term.unit.scale, term.unit.text,
+                  white->value * s->core / term.unit.scale);
+    return s->heavy_tails && s->outliers.count > 0 && matters == matter;
+}
+
+static bool find_tails_that_matter(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    return find_tails(log, channel, true, detail);
+}
+
+static bool find_small_tails(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    return find_tails(log, channel, false, detail);
 }
 
 static bool find_stuck(const imk_identify_log *log, size_t channel, imki_text *detail)
@@ -120,8 +144,10 @@ static bool find_stuck(const imk_identify_log *log, size_t channel, imki_text *d
 
 static bool find_saturated(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
-    imki_text_add(detail, "%zu samples", log->screen[channel].saturated.count);
-    return log->screen[channel].saturated.count > 0;
+    const imk_screen *s = &log->screen[channel];
+    imki_text_add(detail, "%zu samples, white noise times %.4g", s->saturated.count,
+                  s->clipped_deviation);
+    return s->saturated.count > 0;
 }
 
 static bool find_warm_up(const imk_identify_log *log, size_t channel, imki_text *detail)
@@ -235,10 +261,19 @@ static const struct concern {
 } concerns[] = {
     {0, find_outliers, IMK_SCREEN_OUTLIERS, IMK_FINDING_NOTE, "outliers",
      "outliers, left out of the estimate", "outliers, kept"},
+    {0, find_tails_that_matter, 0, IMK_FINDING_WARNING, "heavy_tails",
+     "so many samples are far from the level around them that they may be the noise itself: they "
+     "are kept, and the intervals are as wide as the noise scatters; the log cannot show whether "
+     "they are faults, and then the second value is closer",
+     NULL},
+    {0, find_small_tails, 0, IMK_FINDING_NOTE, "tails",
+     "samples far from the level around them, kept as a part of the noise", NULL},
     {0, find_stuck, IMK_SCREEN_STUCK, IMK_FINDING_NOTE, "stuck",
      "one value repeated longer than the noise allows, left out", "one value repeated, kept"},
     {0, find_saturated, IMK_SCREEN_SATURATED, IMK_FINDING_NOTE, "at_limit",
-     "samples at the end of the range, left out", "samples at the end of the range, kept"},
+     "samples at the end of the range; the values are those of normal noise before it was cut off "
+     "there, and their intervals allow for that assumption",
+     "samples at the end of the range, kept; the values are too low by these factors"},
     {0, find_warm_up, IMK_SCREEN_WARM_UP, IMK_FINDING_NOTE, "warm_up_removed",
      "a warm-up at the start, subtracted", "a warm-up at the start, kept"},
     {0, find_temperature, IMK_SCREEN_TEMPERATURE, IMK_FINDING_NOTE, "temperature",
@@ -447,10 +482,6 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
     if (log->origin == IMK_IDENTIFY_CURVE)
         return v;
     assess_gravity(&v, log);
-    if (!log->screened)
-        imki_verdict_add(&v, IMK_FINDING_NOTE, "not_screened",
-                         "the log is too long to be held in memory, so it was not searched for "
-                         "outliers, steps, a warm-up or an effect of temperature.");
     for (size_t k = 0; k < sizeof concerns / sizeof concerns[0]; k++)
         if (log->screened || concerns[k].bit || concerns[k].find == find_missing)
             assess_concern(&v, log, &concerns[k]);

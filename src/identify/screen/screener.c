@@ -1,0 +1,354 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Screening of one channel that passes by. Samples are gathered in chunks at fixed places of the
+ * record. A chunk is decided when the next one is there, in the order in which one fault would hide
+ * another: missing samples, runs of one value, outliers, values that pile up at an end; what is
+ * left goes into the levels of the whole record, whose jumps and trends are found at the end. */
+#include "screener_internal.h"
+
+#include "base/workspace_internal.h"
+#include "imukit/distributions.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    COOKIE = 0x5C4EE401,
+    CHUNK = IMKI_SCREEN_CHUNK,
+    BLOCK = IMKI_SCREEN_BLOCK,
+    MARGIN = 2 * IMKI_SCREEN_REACH + 2,
+    RESOLVED_EVERY = 8, /* chunks whose values are looked at for a step */
+    RESOLVED_OF = 2048  /* samples of them */
+};
+
+imk_screen_settings imk_screen_default(void)
+{
+    return (imk_screen_settings){.cookie = COOKIE, .false_alarm = 1e-3, .significance = 1e-3};
+}
+
+static void lay_out(imk_screener *s, imki_parts *parts)
+{
+    const size_t row = CHUNK * sizeof(double);
+    const size_t begin = parts->used;
+    s->room = imki_take(parts, row);
+    s->raw[0] = s->room;
+    s->raw[1] = imki_take(parts, row);
+    s->warm[0] = imki_take(parts, row);
+    s->warm[1] = imki_take(parts, row);
+    s->loose = imki_take(parts, row);
+    s->clean = imki_take(parts, row);
+    s->value = imki_take(parts, row + MARGIN * sizeof(double));
+    s->room_count = (parts->used - begin) / sizeof(double);
+    s->place = imki_take(parts, CHUNK * sizeof *s->place);
+    s->mark = imki_take(parts, CHUNK);
+}
+
+size_t imk_screener_size(void)
+{
+    imk_screener unused;
+    imki_parts parts = imki_parts_of(NULL);
+    imki_take(&parts, sizeof unused);
+    lay_out(&unused, &parts);
+    return imki_parts_size(&parts);
+}
+
+static imk_status check(const imk_screen_settings *s, size_t memory_size, imk_error *error)
+{
+    if (s->cookie != COOKIE)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
+                             "start from imk_screen_default()");
+    if (!(s->dt > 0 && s->dt < HUGE_VAL) || !(s->false_alarm > 0 && s->false_alarm < 0.5) ||
+        !(s->significance > 0 && s->significance < 0.5))
+        return imk_error_set(error, IMK_ERROR_RANGE, "settings", NULL,
+                             "dt > 0, false_alarm and significance in (0, 0.5)");
+    if (memory_size < imk_screener_size())
+        return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", NULL,
+                             "imk_screener_size() bytes");
+    return IMK_OK;
+}
+
+imk_status imk_screener_begin(const imk_screen_settings *settings, unsigned what,
+                              imk_screen_sink sink, void *context, imk_screener **screener,
+                              void *memory, size_t memory_size, imk_error *error)
+{
+    const imk_status status = check(settings, memory_size, error);
+    if (status != IMK_OK)
+        return status;
+    imki_parts parts = imki_parts_of(memory);
+    imk_screener *s = imki_take(&parts, sizeof *s);
+    memset(s, 0, sizeof *s);
+    lay_out(s, &parts);
+    s->settings = *settings;
+    s->what = what;
+    s->sink = sink;
+    s->context = context;
+    s->z = -imk_normal_quantile(settings->false_alarm / (2 * imki_screen_samples));
+    s->last = s->run_value = (double)NAN;
+    s->found.outliers.first = s->found.stuck.first = s->found.missing.first = SIZE_MAX;
+    imki_levels_begin(&s->levels);
+    *screener = s;
+    return IMK_OK;
+}
+
+/* ---- a new chunk ----------------------------------------------------------------------------- */
+
+/* What is not finite is missing. */
+static void count_missing(imk_screener *s, size_t first, size_t count, double *samples)
+{
+    imk_screen *f = &s->found;
+    for (size_t i = 0; i < count; i++) {
+        if (imki_is_there(samples[i])) {
+            s->counting.run = 0;
+            continue;
+        }
+        samples[i] = (double)NAN;
+        f->missing.first = f->missing.count++ == 0 ? first + i : f->missing.first;
+        f->missing.runs += s->counting.run++ == 0;
+        f->longest_hole = s->counting.run > f->longest_hole ? s->counting.run : f->longest_hole;
+    }
+}
+
+static double root_sum(double a, double b)
+{
+    const double large = fmax(a, b), small = fmin(a, b);
+    return large > 0 ? large * sqrt(1 + small / large * (small / large)) : 0;
+}
+
+/* Mean and root sum of squares about it, joined with those before [CHAN1983, (2.1)]; scaled, so
+ * that squares neither overflow nor vanish. */
+static void add_moments(imk_screener *s, size_t count, const double *samples)
+{
+    double size = 0, sum = 0, squares = 0, present = 0;
+    int exponent;
+    for (size_t i = 0; i < count; i++) {
+        size = fmax(size, fabs(samples[i])); /* the number, when one of them is none */
+        present += samples[i] == samples[i];
+    }
+    if (!(present > 0))
+        return;
+    double origin = 0;
+    for (size_t i = count; i-- > 0;)
+        origin = samples[i] == samples[i] ? samples[i] : origin;
+    frexp(size, &exponent);
+    const double scale = ldexp(1, exponent < -1000 ? 1000 : -exponent);
+    for (size_t i = 0; i < count; i++) {
+        const double d = samples[i] == samples[i] ? samples[i] * scale - origin * scale : 0;
+        sum += d;
+        squares += d * d;
+    }
+    const double variance = squares - sum * sum / present;
+    const double norm = variance > 0 ? sqrt(variance) / scale : 0;
+    const double before = (double)s->found.present, all = before + present;
+    const double mean = origin + sum / present / scale, apart = before > 0 ? mean - s->mean : 0;
+    s->norm = root_sum(root_sum(s->norm, norm), fabs(apart) * sqrt(before / all * present));
+    s->mean = before > 0 ? s->mean + apart * (present / all) : mean;
+    s->found.present += (size_t)present;
+}
+
+static void find_step(imk_screener *s, size_t index, size_t count, const double *samples)
+{
+    if (index % RESOLVED_EVERY != 0)
+        return;
+    const size_t of = index == 0 ? CHUNK : RESOLVED_OF;
+    const double step = imki_record_resolution(count, samples, s->value, of < count ? of : count);
+    s->step = step;
+    s->found.resolution = fmax(s->found.resolution, step);
+}
+
+/* The chunk raw[at] is complete. */
+static void take_chunk(imk_screener *s, int at)
+{
+    const size_t index = s->chunk + (size_t)at, count = s->count[at];
+    double *samples = s->raw[at];
+    s->found.n += count;
+    count_missing(s, index * CHUNK, count, samples);
+    add_moments(s, count, samples);
+    imki_screen_repeats(s, count, samples);
+}
+
+/* ---- a decided chunk ------------------------------------------------------------------------- */
+
+/* Sum of the variances of whole blocks, and how many there are. */
+static size_t fast_variance(size_t count, const double *samples, double *total)
+{
+    size_t blocks = 0;
+    for (size_t i = 0; i + BLOCK <= count; i += BLOCK) {
+        const double origin = samples[i];
+        double sum[8] = {0}, square[8] = {0};
+        for (size_t k = i; k < i + BLOCK; k += 8)
+            for (size_t l = 0; l < 8; l++) {
+                const double d = samples[k + l] - origin;
+                sum[l] += d;
+                square[l] += d * d;
+            }
+        for (size_t l = 1; l < 8; l++) {
+            sum[0] += sum[l];
+            square[0] += square[l];
+        }
+        const double variance = (square[0] - sum[0] * sum[0] / BLOCK) / (BLOCK - 1);
+        const bool whole = variance == variance;
+        *total += whole ? variance : 0;
+        blocks += whole;
+    }
+    return blocks;
+}
+
+static void add_batch(imki_batches *b, double blocks, double sum, double enough)
+{
+    b->blocks += blocks;
+    b->sum += sum;
+    if (b->blocks < enough)
+        return;
+    const double mean = b->sum / b->blocks;
+    b->count++;
+    b->total += mean;
+    b->squares += mean * mean;
+    b->blocks = b->sum = 0;
+}
+
+/* Fast variance in batches of about 1024, 8192 and 65536 samples. */
+static void add_variances(imk_screener *s)
+{
+    enum { PIECE = 1024 };
+    for (size_t from = 0; from < s->count[0]; from += PIECE) {
+        const size_t left = s->count[0] - from, count = left < PIECE ? left : PIECE;
+        double sum = 0;
+        const double here = (double)fast_variance(count, s->loose + from, &sum);
+        if (!(here > 0))
+            continue;
+        s->fast += sum;
+        s->fast_blocks += here;
+        for (int b = 0; b < IMKI_SCREEN_BATCHES; b++)
+            add_batch(&s->batches[b], here, sum, b == 0 ? 16 : b == 1 ? 200 : 1600);
+    }
+}
+
+/* Median distance of one sample of each block from the mean of the block. */
+static void add_core(imk_screener *s)
+{
+    double *distance = s->value;
+    size_t blocks = 0;
+    for (size_t i = 0, turn = 0; i + BLOCK <= s->count[0]; i += BLOCK, turn++) {
+        double sum = 0;
+        for (size_t k = i; k < i + BLOCK; k++)
+            sum += s->loose[k] - s->loose[i];
+        const double d = s->loose[i + turn % BLOCK] - s->loose[i] - sum / BLOCK;
+        distance[blocks] = fabs(d);
+        blocks += d == d;
+    }
+    if (blocks < BLOCK)
+        return;
+    imki_sort(distance, blocks);
+    s->core_sum += distance[blocks / 2];
+    s->core_count++;
+}
+
+/* What is handed on: without what is to be taken out. */
+static void split(imk_screener *s)
+{
+    const bool stuck = s->what & IMK_SCREEN_STUCK, outliers = s->what & IMK_SCREEN_OUTLIERS;
+    for (size_t i = 0; i < s->count[0]; i++) {
+        const double gone = (double)NAN, sample = s->raw[0][i];
+        const bool out = s->mark[i] & IMKI_MARK_OUTLIER;
+        s->loose[i] = stuck && (s->mark[i] & IMKI_MARK_STUCK) ? gone : sample;
+        s->clean[i] = out ? gone : s->loose[i];
+    }
+    if (s->sink) {
+        double *given = outliers ? s->clean : s->loose;
+        s->sink(s->context, s->count[0], s->loose, given);
+    }
+}
+
+static void add_ends(imk_screener *s)
+{
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    const size_t place = s->chunk * CHUNK;
+    for (size_t i = 0; i < s->count[0]; i++) {
+        low = s->clean[i] < low ? s->clean[i] : low;
+        high = s->clean[i] > high ? s->clean[i] : high;
+    }
+    const imki_ends *top = &s->high, *bottom = &s->low;
+    if (top->distinct < IMKI_SCREEN_ENDS || high >= top->value[IMKI_SCREEN_ENDS - 1])
+        imki_ends_add(&s->high, place, s->count[0], s->clean, 1);
+    if (bottom->distinct < IMKI_SCREEN_ENDS || -low >= bottom->value[IMKI_SCREEN_ENDS - 1])
+        imki_ends_add(&s->low, place, s->count[0], s->clean, -1);
+}
+
+/* Decide raw[0]; raw[1] is the next chunk, of no samples at the end. */
+static void decide(imk_screener *s)
+{
+    memset(s->mark, 0, s->count[0]);
+    find_step(s, s->chunk, s->count[0], s->raw[0]);
+    imki_screen_stuck(s);
+    imki_screen_outliers(s);
+    split(s);
+    add_variances(s);
+    add_core(s);
+    for (size_t i = 0; i < s->count[0]; i++)
+        s->clean[i] = s->mark[i] ? (double)NAN : s->raw[0][i];
+    add_ends(s);
+    imki_levels_add(&s->levels, s->count[0], s->clean, s->thermal ? s->warm[0] : NULL);
+    s->chunk++;
+}
+
+static void rotate(imk_screener *s)
+{
+    double *raw = s->raw[0], *warm = s->warm[0];
+    s->raw[0] = s->raw[1];
+    s->raw[1] = raw;
+    s->warm[0] = s->warm[1];
+    s->warm[1] = warm;
+    s->count[0] = s->count[1];
+    s->count[1] = 0;
+}
+
+void imk_screener_add(imk_screener *s, size_t count, const double *samples,
+                      const double *temperature)
+{
+    s->thermal = s->thermal || temperature;
+    for (size_t done = 0; done < count;) {
+        const int at = s->count[0] == CHUNK;
+        const size_t room = CHUNK - s->count[at], left = count - done;
+        const size_t part = left < room ? left : room;
+        memcpy(s->raw[at] + s->count[at], samples + done, part * sizeof *samples);
+        if (temperature)
+            memcpy(s->warm[at] + s->count[at], temperature + done, part * sizeof *samples);
+        for (size_t i = s->count[at]; s->thermal && i < s->count[at] + part; i++)
+            s->warm[at][i] =
+                temperature && imki_is_there(s->warm[at][i]) ? s->warm[at][i] : (double)NAN;
+        s->count[at] += part;
+        done += part;
+        if (s->count[at] < CHUNK)
+            continue;
+        take_chunk(s, at);
+        if (at == 1) {
+            decide(s);
+            rotate(s);
+        }
+    }
+}
+
+void imki_screen_flush(imk_screener *s)
+{
+    const int at = s->count[0] == CHUNK;
+    if (s->count[at] > 0)
+        take_chunk(s, at);
+    while (s->count[0] > 0) {
+        decide(s);
+        rotate(s);
+    }
+}
+
+imk_status imk_screener_finish(imk_screener *s, imk_screen *found, imk_error *error)
+{
+    enum { PRESENT_MIN = 64 };
+    imki_screen_flush(s);
+    if (s->found.present < PRESENT_MIN)
+        return imk_error_set(error, IMK_ERROR_TOO_SHORT, NULL, NULL,
+                             "at least 64 samples that are not missing");
+    if (s->norm == 0)
+        return imk_error_set(error, IMK_ERROR_CONSTANT, NULL, NULL,
+                             "a channel that changes: check its wiring and driver");
+    imki_screen_conclude(s);
+    *found = s->found;
+    return IMK_OK;
+}

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Parts of the screening of a record that passes by, a chunk of fixed length at a time. What is
+ * decided about a chunk depends on it, on the chunks before and on the next one, never on the
+ * length of the record or on how it is handed over. */
+#ifndef IMUKIT_SCREENER_INTERNAL_H
+#define IMUKIT_SCREENER_INTERNAL_H
+
+#include "identify/records/screen_internal.h"
+#include "imukit/record_screen.h"
+
+enum {
+    IMKI_SCREEN_CHUNK = 8192,
+    IMKI_SCREEN_BLOCK = 32, /* samples whose range and variance are looked at */
+    IMKI_SCREEN_REACH = 15, /* neighbours on each side that make the level of a sample */
+    IMKI_SCREEN_LEVELS = 2048,
+    IMKI_SCREEN_SHARES = 64,
+    IMKI_SCREEN_BATCHES = 3,
+    IMKI_SCREEN_ENDS = 8,
+    /* What a sample is marked with. */
+    IMKI_MARK_STUCK = 1,
+    IMKI_MARK_OUTLIER = 2
+};
+
+/* Samples of a record for which the thresholds hold: no record has more. */
+static const double imki_screen_samples = 1e9;
+
+/* Means of blocks of equal length over the whole record: at most IMKI_SCREEN_LEVELS, joined two by
+ * two when they are more. */
+typedef struct imki_levels {
+    size_t block, count; /* samples to a block; whole blocks */
+    size_t filled;       /* samples of the block that is being filled */
+    double shift, shift_temperature;
+    double sum[IMKI_SCREEN_LEVELS + 1], present[IMKI_SCREEN_LEVELS + 1]; /* less `shift` */
+    double temperature[IMKI_SCREEN_LEVELS + 1], measured[IMKI_SCREEN_LEVELS + 1];
+} imki_levels;
+
+/* The most extreme values of one side, the first the most extreme, and how often each came. */
+typedef struct imki_ends {
+    size_t distinct;
+    double value[IMKI_SCREEN_ENDS];
+    imk_screen_count count[IMKI_SCREEN_ENDS];
+    size_t last[IMKI_SCREEN_ENDS]; /* place of the last one */
+} imki_ends;
+
+/* Fast variance of batches of blocks: sums over the whole batches, and the batch being filled. */
+typedef struct imki_batches {
+    double blocks, sum; /* of the batch being filled */
+    double count, total, squares;
+} imki_batches;
+
+typedef struct imki_counting {
+    size_t run;  /* of missing samples at the end of what was seen */
+    size_t last; /* place of the last outlier */
+} imki_counting;
+
+struct imk_screener {
+    imk_screen_settings settings;
+    unsigned what;
+    imk_screen_sink sink;
+    void *context;
+    double z;        /* threshold in standard deviations */
+    double *raw[2];  /* the chunk to be decided, and the next one; NaN where nothing is there */
+    double *warm[2]; /* their temperatures, NaN where missing */
+    double *loose, *clean, *value;
+    uint32_t *place;
+    unsigned char *mark;
+    double *room; /* all of these arrays, for other use at the end */
+    size_t room_count;
+    size_t count[2], chunk; /* samples in raw[]; number of chunks decided */
+    bool thermal;
+    /* Repeats: shares of stretches of 512 samples, the last ones in turn. */
+    double share[IMKI_SCREEN_SHARES];
+    size_t shares, repeats, compared;
+    double last; /* sample */
+    /* The run of one value that the last chunk ended with. */
+    double run_value;
+    size_t run_length;
+    bool run_stuck;
+    double tail[IMKI_SCREEN_REACH]; /* last samples of the chunk before */
+    size_t tail_count;
+    double scale, step; /* of the noise, of the values; 0: not known yet */
+    double scale_sum, threshold_sum, scale_count;
+    size_t shoulder;             /* samples that are nearly outliers */
+    double core_sum, core_count; /* median distances from the mean of 32 samples, of chunks */
+    imki_counting counting;
+    double fast, fast_blocks; /* sum of the variances within blocks */
+    imki_batches batches[IMKI_SCREEN_BATCHES];
+    double shift, norm, mean; /* of the samples: Chan's update of mean and root sum of squares */
+    imki_ends high, low;      /* low: of the negatives */
+    imki_levels levels;
+    imk_screen found;
+};
+
+/* screener.c: decide what has not been decided yet. */
+void imki_screen_flush(imk_screener *screener);
+
+/* screener_stuck.c */
+/* Shares of repeats of a new chunk. */
+void imki_screen_repeats(imk_screener *s, size_t count, const double *samples);
+/* Longest run of one value that the noise allows, by the last shares. */
+size_t imki_screen_stuck_limit(const imk_screener *s);
+/* Mark stuck samples of raw[0]; raw[1] tells how the last run goes on. */
+void imki_screen_stuck(imk_screener *s);
+
+/* screener_outliers.c */
+void imki_screen_outliers(imk_screener *s);
+
+/* screener_ends.c */
+/* @param place  of the first sample in the record @param sign  -1: of the negatives */
+void imki_ends_add(imki_ends *ends, size_t place, size_t count, const double *samples, double sign);
+/* Do samples pile up at the end? As many as `present` normal samples about `mean` would not.
+ * @param resolution  step between values; 0: none
+ * @param fast  is their deviation that of neighbouring samples? */
+bool imki_ends_pile(const imki_ends *ends, double resolution, double mean, double deviation,
+                    double present, bool fast);
+
+/* screener_levels.c */
+void imki_levels_begin(imki_levels *levels);
+void imki_levels_add(imki_levels *levels, size_t count, const double *samples,
+                     const double *temperature);
+/* Means of groups of blocks, at most `most` of them; what is missing lies on lines.
+ * @param empty  set to the share of the means that nothing was there for
+ * @return how many; 0 when nothing is there */
+size_t imki_levels_means(const imki_levels *levels, size_t most, const double *sum,
+                         const double *present, double shift, double *mean, double *empty);
+/* Samples of a group. */
+size_t imki_levels_length(const imki_levels *levels, size_t most);
+
+/* level_jumps.c */
+/* Most likely sudden changes among n means, 64 <= n <= IMKI_SCREEN_LEVELS, each significant beside
+ * those before; they are subtracted from the means.
+ * @param empty    share of the means that are no measurements
+ * @param room     memory, imki_jumps_room(n) doubles
+ * @param most     places in `place` (first mean behind the jump) and `size`
+ * @param gain     log-likelihood that the first one is worth; 0 without one
+ * @return how many */
+size_t imki_jumps_room(size_t n);
+size_t imki_jumps_find(size_t n, double *mean, double empty, double significance, double *room,
+                       size_t most, size_t *place, double *size, double *gain);
+
+/* clipped_normal.c */
+/* A normal distribution of which everything beyond two limits is put onto them. */
+typedef struct imki_clipped {
+    double deviation; /* of the normal distribution over that of what is left */
+    double gain;      /* of slow changes: the share that is not clipped */
+    double misfit;    /* relative, of the deviation found to that of such a distribution */
+} imki_clipped;
+/* @param share  of samples at the lower and the upper limit; 0: no limit
+ * @param limit  these values; @param mean,deviation  of the samples; @param step  between values */
+imki_clipped imki_clipped_normal(const double share[2], const double limit[2], double mean,
+                                 double deviation, double step);
+
+/* screen_finish.c: what the whole record tells. */
+void imki_screen_conclude(imk_screener *s);
+
+#endif
