@@ -166,7 +166,8 @@ def poses(rng, count, attitudes=None):
 
 
 def six_faces(rng, rounds, placement, faces=6):
-    """Each of the faces `rounds` times, at any heading, with a placement error about each axis [rad]."""
+    """Each of the faces `rounds` times, at any heading; placement: 1 sigma of the error about each
+    axis [rad]."""
     s = Session()
     for k in range(faces * rounds):
         heading = rotation(np.array([0, 0, rng.uniform(0, 2 * np.pi)]))
