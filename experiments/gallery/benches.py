@@ -54,9 +54,18 @@ def few_poses(rng, strength):
     return sessions.draw_unit(rng), sessions.poses(rng, int(strength))
 
 
+def few_attitudes(rng, strength):
+    return sessions.draw_unit(rng), sessions.poses(rng, 24, int(strength))
+
+
 def six(rng, strength):
     return (sessions.draw_unit(rng, full_frame=True),
             sessions.six_faces(rng, 3, np.radians(strength)))
+
+
+def few_faces(rng, strength):
+    return (sessions.draw_unit(rng, full_frame=True),
+            sessions.six_faces(rng, 3, np.radians(0.1), int(strength)))
 
 
 def six_once(rng, strength):
@@ -135,8 +144,9 @@ BENCHES = [
     Bench("six_once", "sound", FACES, (0.1,), "six faces once", six_once),
     Bench("table", "sound", TABLE, (0.001,), "three attitudes, rates to 120 deg/s; no "
           "g-sensitivity", table, options=lambda s: ["--without", "nonlinearity,g_sensitivity"]),
-    Bench("rate", "11", POSES, (1.02, 0.8, 0.5, 2), "wrong --rate, no time column", by_hand,
-          rate_option),
+    Bench("rate_close", "11", POSES, (1.02,), "a slightly wrong --rate, no time column", by_hand,
+          rate_option, undecidable="gyros with this scale factor exist"),
+    Bench("rate", "11", POSES, (0.8, 0.5, 2), "wrong --rate, no time column", by_hand, rate_option),
     Bench("gyro_range", "11", POSES, (0.5, 2, 4), "gyros by a wrong range", by_hand, scale(0, 3)),
     Bench("gyro_unit", "11", POSES, (57.29578, 1 / 57.29578), "deg/s for rad/s and the other way",
           by_hand, scale(0, 3)),
@@ -164,6 +174,9 @@ BENCHES = [
           lambda rng, s: table(rng, 0.001), late_reference,
           lambda s: ["--without", "nonlinearity,g_sensitivity"]),
     Bench("few_poses", "16", POSES, (2, 3, 5), "this many poses", few_poses),
+    Bench("few_attitudes", "16", POSES, (2, 3, 4), "24 poses in so many attitudes, to 2 deg",
+          few_attitudes),
+    Bench("few_faces", "16", FACES, (1, 2, 4), "this many faces, three times", few_faces),
     Bench("nan_rows", "16", POSES, (0.001, 0.01, 0.1), "share of cells that are NaN", by_hand,
           nan_rows),
     Bench("gravity", "16", POSES, (1.003, 1.01, 1.05), "--gravity times", by_hand,
@@ -298,7 +311,7 @@ def run_benches(settings, only, seeds):
             group = [one(settings, bench, strength, seed) for seed in range(seeds)]
             entries += group
             mark = "undecidable: " + bench.undecidable if bench.undecidable else ""
-            print(f"{bench.name:17} {strength:8.4g} {summary(group)}{mark}", flush=True)
+            print(f"{bench.name:17} {strength:8.4g} {summary(group)}  {mark}", flush=True)
     return entries
 
 

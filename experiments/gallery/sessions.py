@@ -152,22 +152,26 @@ def random_attitude(rng):
                      [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
 
 
-def poses(rng, count):
-    """The unit by hand in random attitudes, after a rest of 20 s."""
-    s = Session(attitude=random_attitude(rng))
+def poses(rng, count, attitudes=None):
+    """The unit by hand in random attitudes, after a rest of 20 s. attitudes: only so many different
+    ones, in turn, each found again to 2 degrees."""
+    some = [random_attitude(rng) for _ in range(attitudes or count)]
+    s = Session(attitude=some[0])
     s.rest(20)
-    for _ in range(count - 1):
-        s.turn_to(random_attitude(rng), rng.uniform(1.5, 2.5))
+    for k in range(1, count):
+        near = rotation(rng.normal(0, np.radians(2), 3)) if attitudes else np.eye(3)
+        s.turn_to(some[k % len(some)] @ near, rng.uniform(1.5, 2.5))
         s.rest(4)
     return s
 
 
-def six_faces(rng, rounds, placement):
-    """Each face `rounds` times, at any heading, with a placement error about each axis [rad]."""
+def six_faces(rng, rounds, placement, faces=6):
+    """Each of the faces `rounds` times, at any heading; placement: 1 sigma of the error about each
+    axis [rad]."""
     s = Session()
-    for k in range(6 * rounds):
+    for k in range(faces * rounds):
         heading = rotation(np.array([0, 0, rng.uniform(0, 2 * np.pi)]))
-        s.turn_to(heading @ FACES[k % 6] @ rotation(rng.normal(0, placement, 3)), 2)
+        s.turn_to(heading @ FACES[k % faces] @ rotation(rng.normal(0, placement, 3)), 2)
         s.rest(6)
     return s
 
