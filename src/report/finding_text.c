@@ -291,6 +291,15 @@ static const struct message {
     {"calibrate:motion_offset",
      "{record} fits the programme best if the programme begins {0.4f} s {1?}later{1!}earlier{?} "
      "than stated (1 sigma {2.2g} s); use --motion-offset {3.4f}s, or auto"},
+    {"calibrate:not_aligned",
+     "{record} fits the programme at no single offset: the clock of the log may run faster or "
+     "slower "
+     "than that of the programme (check --rate, or the times), or another programme was run"},
+    {"calibrate:clock", "{record}: the second half of the log is {0.3g} s {2?}later{2!}earlier{?} "
+                        "against the programme "
+                        "than the first: the clock of the log runs {1.2g} % too "
+                        "{2?}fast{2!}slow{?}, as if the sampling rate were "
+                        "{3.5g} Hz and not {4.5g} Hz; check --rate, or the times"},
     /* calibrate_set_up.c */
     {"counts_of_axes", "--{name}-sensitivity and --{name}-zero take one number, or one for each of "
                        "{0} axes"},

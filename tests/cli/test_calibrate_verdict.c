@@ -213,6 +213,66 @@ static void one_gyro_about_z(void **state)
     sweep();
 }
 
+/* A clock that is 1 % off against the programme of a table; one that is right. */
+static void clocks_are_compared_with_the_programme(void **state)
+{
+    (void)state;
+    put_unit(1, 1, 0);
+    char text[2000];
+    size_t used = (size_t)snprintf(text, sizeof text,
+                                   "imukit_motion: 1\nstart: {latitude: 48.1 deg, longitude: 11.6 "
+                                   "deg, height: 520 m}\nsteps:\n  - hold 5 s\n");
+    for (int k = 0; k < 3; k++)
+        used += (size_t)snprintf(
+            text + used, sizeof text - used,
+            "  - repeat: {times: 1, steps: [rotate %c at 20 deg/s for 5 s, rotate %c at -20 deg/s "
+            "for 5 s, rotate %c at 100 deg/s for 5 s, rotate %c at -100 deg/s for 5 s]}\n%s",
+            "zxy"[k], "zxy"[k], "zxy"[k], "zxy"[k],
+            k == 0   ? "  - pose 0 90 0 deg in 5 s\n  - hold 5 s\n"
+            : k == 1 ? "  - pose 90 0 0 deg in 5 s\n  - hold 5 s\n"
+                     : "then: hold\n");
+    put("table.yaml", text);
+    assert_int_equal(run("$I simulate unit.yaml --motion table.yaml --rate 100Hz --duration 90s "
+                         "--seed 2 -o poses.csv"),
+                     0);
+    const char *line = "cut -d, -f2-4 poses.csv >bare.csv; $I calibrate bare.csv --rate 100Hz -p "
+                       "rate-table --motion table.yaml --without nonlinearity";
+    assert_int_equal(run(line), 0);
+    check_contains(out, "Good: gyro", line);
+    check_says("$I calibrate bare.csv --rate 98Hz -p rate-table --motion table.yaml --without "
+               "nonlinearity",
+               0, err, "bare.csv fits the programme");
+    check_says("$I calibrate bare.csv --rate 99.5Hz -p rate-table --motion table.yaml --without "
+               "nonlinearity --motion-offset auto",
+               0, err, "as if the sampling rate were");
+    sweep();
+}
+
+/* A session on faces in counts, real: its full turns stated the other way round, a gyro inverted.
+ */
+static void turns_the_other_way_round(void **state)
+{
+    (void)state;
+#define SESSION SHARED_DIRECTORY "/data/calibration/ferraris_session_204.8hz_counts.csv.gz"
+#define FACES "-p ferraris --rate 204.8Hz --gravity 9.80665m/s^2"
+    if (run("test -e " SESSION) != 0)
+        skip();
+    const char *line = "$I calibrate " SESSION " " FACES;
+    assert_int_equal(run(line), 0);
+    assert_null(strstr(err, "opposite sign"));
+    /* The real session does not obey the model: 3 mg, 54 times its noise. */
+    check_contains(err, "the model does not describe this log", line);
+    check_says("$I calibrate " SESSION " " FACES " --turn-angle -360deg", 0, out,
+               "all gyros read the full turns with the opposite sign");
+    check_says("gzip -dc " SESSION " | awk -F, -v OFS=, 'NR > 1 {for (i = 6; i < 9; i++) $i = -$i} "
+               "1' >bad.csv; $I calibrate bad.csv " FACES,
+               0, err, "all gyros read the full turns with the opposite sign");
+    check_says("gzip -dc " SESSION " | awk -F, -v OFS=, 'NR > 1 {$6 = -$6} 1' >bad.csv; $I "
+               "calibrate bad.csv " FACES,
+               0, err, "gyro_x reads the full turns with the opposite sign");
+    sweep();
+}
+
 /* Grades from a consumer unit to one whose noise is a hundredth. */
 static void sound_benches_are_good(void **state)
 {
@@ -243,6 +303,8 @@ int main(void)
         cmocka_unit_test(models_that_do_not_describe_the_log),
         cmocka_unit_test(only_labelled_rests_are_holds),
         cmocka_unit_test(one_gyro_about_z),
+        cmocka_unit_test(clocks_are_compared_with_the_programme),
+        cmocka_unit_test(turns_the_other_way_round),
         cmocka_unit_test(sound_benches_are_good),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

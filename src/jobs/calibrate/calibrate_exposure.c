@@ -16,6 +16,9 @@
 static const double largest_shift = 10.0;
 /* Correlation of readings and programme from which on they are taken to be of one motion. */
 static const double followed = 0.5;
+/* A drift between the halves of a record that is less does not reach from one step into the next
+ * [s]: 0.2 s are left out at both ends of a step. */
+static const double clock_tolerance = 0.1;
 
 static imk_status no_memory(imk_error *error)
 {
@@ -176,25 +179,24 @@ static imk_status expose(imk_calibrate_record *log, const imk_motion *motion, im
 }
 
 /* Where readings follow the references best. */
-static imk_status find_shift(const imk_calibrate_record *log, imk_reference_shift *shift,
-                             imk_error *error)
+static imk_status find_shift(const imk_test_record *record, const imk_allocator *allocator,
+                             imk_reference_shift *shift, imk_error *error)
 {
-    const double length = (double)log->record.count * log->record.dt;
+    const double length = (double)record->count * record->dt;
     const double most = fmin(largest_shift, length / 4);
-    const size_t size = imk_reference_offset_workspace_size(&log->record, most);
-    void *workspace = imki_resize(&log->log.allocator, NULL, size);
+    const size_t size = imk_reference_offset_workspace_size(record, most);
+    void *workspace = imki_resize(allocator, NULL, size);
     if (!workspace)
         return no_memory(error);
-    const imk_status status =
-        imk_reference_offset(&log->record, most, shift, workspace, size, error);
-    imki_resize(&log->log.allocator, workspace, 0);
+    const imk_status status = imk_reference_offset(record, most, shift, workspace, size, error);
+    imki_resize(allocator, workspace, 0);
     return status;
 }
 
 static imk_status find_offset(imk_calibrate_record *log, imk_error *error)
 {
     imk_reference_shift shift;
-    const imk_status status = find_shift(log, &shift, error);
+    const imk_status status = find_shift(&log->record, &log->log.allocator, &shift, error);
     if (status != IMK_OK)
         return status;
     if (!(shift.correlation > followed))
@@ -212,14 +214,84 @@ static imk_status find_offset(imk_calibrate_record *log, imk_error *error)
 /* A record that begins at another time than the programme looks like a bad sensor. */
 static imk_status check_offset(imk_calibrate_record *log, imk_error *error)
 {
+    imk_error why;
     imk_reference_shift shift;
-    const imk_status status = find_shift(log, &shift, error);
+    const imk_status status = find_shift(&log->record, &log->log.allocator, &shift, &why);
     if (status == IMK_OK && shift.correlation > followed &&
         fabs(shift.offset) >= log->record.dt + 5 * shift.sigma)
         imki_find(&log->loaded, IMK_FINDING_WARNING, "calibrate:motion_offset", NULL,
                   IMKI_NUMBERS(fabs(shift.offset), shift.offset > 0, shift.sigma,
                                log->motion_offset + shift.offset));
-    return status == IMK_ERROR_MEMORY ? status : IMK_OK;
+    if (status == IMK_ERROR_NO_CONVERGENCE && fabs(why.value) > clock_tolerance)
+        imki_find(&log->loaded, IMK_FINDING_WARNING, "calibrate:not_aligned", NULL, 0, NULL);
+    return status == IMK_ERROR_MEMORY ? no_memory(error) : IMK_OK;
+}
+
+/* `count` samples from `begin` on, of readings and references. */
+static imk_test_record part_of(const imk_test_record *whole, size_t begin, size_t count)
+{
+    imk_test_record part = *whole;
+    part.count = count;
+    part.time = whole->time ? whole->time + begin : NULL;
+    part.section = NULL;
+    part.temperature = NULL;
+    for (int sensor = 0; sensor < 2; sensor++)
+        for (int i = 0; i < whole->axis_count[sensor]; i++)
+            part.reading[sensor][i] += begin;
+    for (int i = 0; i < 3; i++) {
+        part.reference_rate[i] += whole->reference_rate[i] ? begin : 0;
+        part.reference_force[i] += whole->reference_force[i] ? begin : 0;
+        part.reference_acceleration[i] += whole->reference_acceleration[i] ? begin : 0;
+    }
+    return part;
+}
+
+/* Mean square of the reference rates about their means, or of the forces. */
+static double variation(const imk_test_record *record)
+{
+    const double *const *channel =
+        record->reference_rate[0] ? record->reference_rate : record->reference_force;
+    double total = 0;
+    for (int i = 0; i < 3; i++) {
+        double sum = 0, square = 0, count = 0;
+        for (size_t k = 0; channel[i] && k < record->count; k++)
+            if (isfinite(channel[i][k])) {
+                sum += channel[i][k];
+                square += channel[i][k] * channel[i][k];
+                count += 1;
+            }
+        total += count > 0 ? square / count - sum * sum / (count * count) : 0;
+    }
+    return total;
+}
+
+/* A log whose clock runs faster or slower than the programme's is another time off in its second
+ * half than in its first. Each half must follow the programme. */
+static imk_status check_clock(imk_calibrate_record *log, imk_error *error)
+{
+    imk_error why;
+    imk_reference_shift shift[2];
+    const size_t half = log->record.count / 2;
+    for (int k = 0; k < 2; k++) {
+        const imk_test_record part = part_of(&log->record, k == 0 ? 0 : half, half);
+        const imk_status status = find_shift(&part, &log->log.allocator, &shift[k], &why);
+        if (status == IMK_ERROR_MEMORY)
+            return no_memory(error);
+        if (status == IMK_ERROR_NO_CONVERGENCE && fabs(why.value) > clock_tolerance &&
+            variation(&part) > 0.1 * variation(&log->record)) {
+            imki_find(&log->loaded, IMK_FINDING_WARNING, "calibrate:not_aligned", NULL, 0, NULL);
+            return IMK_OK;
+        }
+        if (status != IMK_OK || !(shift[k].correlation > followed))
+            return IMK_OK;
+    }
+    const double grows = shift[1].offset - shift[0].offset;
+    const double part = grows / ((double)half * log->record.dt);
+    if (fabs(grows) > clock_tolerance && fabs(grows) > 6 * hypot(shift[0].sigma, shift[1].sigma))
+        imki_find(&log->loaded, IMK_FINDING_WARNING, "calibrate:clock", NULL,
+                  IMKI_NUMBERS(fabs(grows), 100 * fabs(part), part > 0, (1 + part) / log->record.dt,
+                               1 / log->record.dt));
+    return IMK_OK;
 }
 
 static imk_status take_motion(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
@@ -227,10 +299,14 @@ static imk_status take_motion(const imk_calibrate_log_settings *s, imk_calibrate
 {
     log->motion_offset = s->find_offset ? 0 : s->motion_offset;
     imk_status status = expose(log, s->motion, error);
-    if (status != IMK_OK || !s->find_offset)
-        return status == IMK_OK ? check_offset(log, error) : status;
-    status = find_offset(log, error);
-    return status == IMK_OK ? expose(log, s->motion, error) : status;
+    if (status == IMK_OK && !s->find_offset) {
+        const size_t before = log->loaded.count;
+        status = check_offset(log, error);
+        if (log->loaded.count > before) /* one doubt about the time is enough */
+            return status;
+    } else if (status == IMK_OK && (status = find_offset(log, error)) == IMK_OK)
+        status = expose(log, s->motion, error);
+    return status == IMK_OK ? check_clock(log, error) : status;
 }
 
 imk_status imki_take_reference(const imk_calibrate_log_settings *s, imk_calibrate_record *log,

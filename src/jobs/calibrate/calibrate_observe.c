@@ -66,10 +66,17 @@ static void keep_labelled(imk_calibrate_record *log)
     log->interval_count = kept;
 }
 
+static void diagnose(const imk_calibrate_log *b, imk_calibrate_record *log)
+{
+    log->diagnostic_count = imk_record_diagnostics(
+        &log->record, &log->stationary, log->interval_count, log->interval, b->calibration->gravity,
+        &b->calibration->model, IMK_CALIBRATE_DIAGNOSTICS_MAX, log->diagnostic);
+    diagnostics_of_named_holds(log);
+}
+
 /* Where it stands still: for the diagnostics, the table of poses and the plot. */
 static imk_status detect(imk_calibrate_log *b, imk_calibrate_record *log, imk_error *error)
 {
-    const imk_model *model = &b->calibration->model;
     const size_t size = imk_static_workspace_size(&log->record, &log->settings.stationary);
     void *workspace = imki_resize(&b->job.allocator, NULL, size);
     if (b->settings.activity)
@@ -82,10 +89,7 @@ static imk_status detect(imk_calibrate_log *b, imk_calibrate_record *log, imk_er
     imki_resize(&b->job.allocator, workspace, 0);
     if (status == IMK_OK) {
         keep_labelled(log);
-        log->diagnostic_count = imk_record_diagnostics(
-            &log->record, &log->stationary, log->interval_count, log->interval,
-            b->calibration->gravity, model, IMK_CALIBRATE_DIAGNOSTICS_MAX, log->diagnostic);
-        diagnostics_of_named_holds(log);
+        diagnose(b, log);
         return IMK_OK;
     }
     /* A log too short for holds may still do for a table. */
@@ -162,6 +166,8 @@ imk_status imki_observe(imk_calibrate_log *b, imk_calibrate_record *log, imk_err
     imki_resize(&b->job.allocator, workspace, 0);
     if (status != IMK_OK)
         return error->status;
+    if (log->stationary.window > 0 && (b->nominal[0] || b->nominal[1]))
+        diagnose(b, log); /* with the sensitivities that were found */
     return log->procedure == IMK_PROCEDURE_THERMAL ? look_at_temperature(b, log, error) : IMK_OK;
 }
 

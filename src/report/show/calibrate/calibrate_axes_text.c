@@ -100,3 +100,41 @@ size_t imki_axes_text(uint64_t classes, char *text, size_t size)
     free(list.bytes);
     return count;
 }
+
+static bool has_ferraris(const imk_calibrate_log *b)
+{
+    for (size_t k = 0; k < b->count; k++)
+        if (b->record[k].procedure == IMK_PROCEDURE_FERRARIS)
+            return true;
+    return false;
+}
+
+/* Against the sensitivity that was stated, or by the one that was found. */
+static bool is_opposite(const imk_calibrate_log *b, int axis)
+{
+    const imk_triad *gyro = &b->result->model.gyro;
+    return gyro->scale_factor.fixed.value[axis] < -1 ||
+           (b->nominal[0] && gyro->sensitivity.value[axis] < 0);
+}
+
+size_t imki_turns_text(const imk_calibrate_log *b, char *text, size_t size)
+{
+    imki_text list = {0};
+    size_t count = 0;
+    const int axes = b->result ? b->result->model.gyro.axis_count : 0;
+    for (int i = 0; i < axes && has_ferraris(b); i++)
+        if (is_opposite(b, i))
+            imki_text_add(&list, "%sgyro_%c", count++ ? " and " : "", imk_axis_letter(i));
+    if (count > 0)
+        snprintf(text, size,
+                 "%s read%s the full turns with the opposite sign: either these turns went the "
+                 "other way round (%s), or these columns are inverted. The log does not show "
+                 "which: turn the unit counter-clockwise as seen from the tip of an axis, and its "
+                 "gyro must read positive",
+                 count == (size_t)axes || !list.bytes ? "all gyros" : list.bytes,
+                 count == 1 ? "s" : "",
+                 count == (size_t)axes ? "change the sign of --turn-angle"
+                                       : "all turns must go the same way");
+    free(list.bytes);
+    return count;
+}

@@ -375,11 +375,16 @@ static calibrate_message correlated(const imk_calibrate_log *b, double correlati
 {
     char one[IMK_MODEL_PARAMETER_NAME] = "?", other[IMK_MODEL_PARAMETER_NAME] = "?";
     const imk_calibration_result *r = b->result;
-    for (int k = 0; k < 2; k++)
-        if (r->weakest_parameter[k] >= 0)
-            (void)imk_model_parameter_name(r->parameter[r->weakest_parameter[k]],
-                                           k == 0 ? one : other);
-    return say(IMK_FINDING_WARNING, "correlated",
+    bool linear = true;
+    for (int k = 0; k < 2; k++) {
+        const imk_model_parameter *p = &r->parameter[r->weakest_parameter[k]];
+        (void)imk_model_parameter_name(*p, k == 0 ? one : other);
+        linear = linear && (p->term == IMK_MODEL_BIAS || p->term == IMK_MODEL_SCALE_FACTOR ||
+                            p->term == IMK_MODEL_MISALIGNMENT);
+    }
+    /* Few rates do not separate K2 from an asymmetry: their intervals say so, and the log is sound.
+     */
+    return say(linear ? IMK_FINDING_WARNING : IMK_FINDING_NOTE, "correlated",
                "%s and %s are strongly correlated (%.4f): an error in one balances an error in the "
                "other, so only a combination of both is known well; add poses or turns that differ "
                "more, or leave one of the two out (--estimate)",
@@ -566,6 +571,23 @@ static bool is_said(const imk_verdict *v, size_t count, const char *code)
     return false;
 }
 
+/* A sensitivity that was found takes a sign with it: the model is right if the turns were, and of
+ * all gyros alike when the direction of the turns was stated. */
+static void add_opposite_turns(const imk_calibrate_log *b, imk_verdict *v)
+{
+    calibrate_message m = {.level = IMK_FINDING_FAILURE, .code = "left_handed"};
+    const size_t count =
+        is_said(v, v->count, m.code) ? 0 : imki_turns_text(b, m.text, sizeof m.text);
+    if (count == 0)
+        return;
+    if (b->nominal[0])
+        m.level =
+            count == (size_t)b->result->model.gyro.axis_count && !isnan(b->settings.turn_angle)
+                ? IMK_FINDING_NOTE
+                : IMK_FINDING_WARNING;
+    add(v, m);
+}
+
 imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
                                   const imk_message *before, imk_result *result)
 {
@@ -582,6 +604,7 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
         add_undetermined(b, log, &v);
         add_thermal(&v, log);
     }
+    add_opposite_turns(b, &v);
     const size_t of_logs = v.count;
     add_placements(b, &v);
     for (size_t d = 0; d < b->diagnostic_count; d++) {
@@ -589,7 +612,8 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
         const bool of_scale = b->diagnostic[d].kind == IMK_DIAGNOSTIC_SCALE;
         const char *unit = b->diagnostic[d].sensor == 0 ? "rate_unit" : "gravity_unit";
         if (!is_said(&v, of_scale ? of_logs : v.count, message.code) &&
-            !(of_scale && is_said(&v, v.count, unit)))
+            !(of_scale && is_said(&v, v.count, unit)) &&
+            !(of_scale && b->diagnostic[d].value < 0 && is_said(&v, v.count, "left_handed")))
             add(&v, message);
     }
     imki_untestable(b, &v);

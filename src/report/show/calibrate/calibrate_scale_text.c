@@ -49,7 +49,7 @@ static void add_rate(const imk_calibrate_log *b, double ratio, imki_text *to)
     if (!is_of_angles(b))
         return;
     add_cause(to,
-              "a sampling rate of %.4g Hz instead of %.4g Hz (the angle of a turn is rate "
+              "a sampling rate of about %.3g Hz instead of %.4g Hz (the angle of a turn is rate "
               "times time: check %s)",
               ratio / record->dt, 1 / record->dt,
               record->time ? "the times and their unit" : "--rate");
@@ -115,7 +115,7 @@ void imki_scale_text(const imk_calibrate_log *b, const imk_diagnostic_finding *d
                  imk_axis_letter(d->axis));
     imki_scale_causes(b, d->sensor, d->value, all, &causes);
     snprintf(text, size,
-             "%s read%s %.4g times the true %s: %s such sensor%s by more than %.2g %%. %s "
+             "%s read%s %.3g times the true %s: %s such sensor%s by more than %.2g %%. %s "
              "causes: %s",
              which, all ? "" : "s", d->value, d->sensor == 0 ? "rate" : "force",
              d->limit < 0.1 ? "few" : "no", d->limit < 0.1 ? "s err" : " errs", 100 * d->limit,
