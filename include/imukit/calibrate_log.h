@@ -64,6 +64,8 @@ typedef struct imk_calibrate_log_settings {
     const char *section; /**< name of the column of texts that names holds, turns or runs; default
                               NULL: the only column of texts, if there is one */
     double placement;    /**< 1 sigma of the attitude of a face on the plate [rad] */
+    double g_sensitivity_sigma; /**< 1 sigma of a g-sensitivity that is not estimated [rad/s per
+                                   m/s^2] */
     double mounting;     /**< 1 sigma of the attitude of the unit on its fixture or table [rad] */
     double turn_angle;   /**< ferraris: angle of each turn about its axis, with sign [rad] */
     double initial_rest; /**< duration of the rest at the beginning [s] */

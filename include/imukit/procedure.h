@@ -62,6 +62,10 @@ typedef struct imk_procedure_settings {
     bool cross_products; /**< tumble, centrifuge: estimate Kip, Kio, Kpo; default false */
     bool g_sensitivity, g2_sensitivity; /**< estimate those of the gyros, where the forces vary;
                                            default true, false */
+    double g_sensitivity_sigma; /**< rate-table, tumble, centrifuge: 1 sigma of each g-sensitivity
+                                   that is not determined or not estimated, as part of the other
+                                   sigmas [rad/s per m/s^2]; default 0.01 deg/s per g; 0: it is
+                                   exactly as in the model */
     double sine_block;     /**< rate-table: averaging time of samples where the reference is never
                               constant [s]; 0 (default): single samples */
     int temperature_order; /**< thermal: order for the bias; 0 (default): chosen by
