@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Readings as channels: of tables as they stand, and of records of bench tests as the mean of every
  * stretch in which the reference is constant. */
-#include "imukit/evaluate_log.h"
-
-#include "jobs/arena_internal.h"
-#include "jobs/job_internal.h"
+#include "evaluate_job_internal.h"
 
 #include "imukit/channel_units.h"
 #include "imukit/reference_alignment.h"
@@ -377,17 +374,19 @@ imk_status imk_evaluate_record(imk_evaluate_log *evaluation, const imk_calibrate
 {
     imk_evaluate_log *v = evaluation;
     const imk_test_record *record = &log->record;
+    imk_test_record aligned;
     const bool known[2] = {record->reference_rate[0] != NULL, record->reference_force[0] != NULL};
     if (!known[0] && !known[1])
         return imki_fail(&v->findings, error, IMK_ERROR_KEY_MISSING, "no_reference", NULL, 0, NULL);
     imki_arena scratch = {.allocator = ((imki_arena *)v->memory)->allocator};
     const double *zero = imki_arena_take(&scratch, record->count * sizeof *zero);
-    imk_status status = zero ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    imk_status status = zero ? imki_evaluate_align(v, log, &scratch, &aligned, error)
+                             : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     for (int sensor = 0; sensor < 2; sensor++)
         for (int axis = 0;
              status == IMK_OK && known[sensor] && axis < 3 && axis < record->axis_count[sensor];
              axis++)
-            status = take_axis(v, record, zero, sensor, axis, error);
+            status = take_axis(v, &aligned, zero, sensor, axis, error);
     imki_arena_free(&scratch);
     v->run_count += v->settings.sections && record->section_count > 0 ? record->section_count : 1;
     if (status == IMK_OK && v->channel_count == 0)
