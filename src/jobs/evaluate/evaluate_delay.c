@@ -15,6 +15,9 @@
 static const double largest_delay = 10;
 /* Readings that follow their reference less than this do not tell when. */
 static const double followed = 0.9;
+/* What the errors of the sensor, such as hysteresis, and the interpolation do to a delay [samples].
+ */
+static const double own_part = 0.1;
 /* Another delay that fits as well as this part of the best one: a sine. */
 static const double ambiguous = 0.95;
 
@@ -72,11 +75,12 @@ imk_status imki_evaluate_align(imk_evaluate_log *v, const imk_calibrate_record *
                             ? v->settings.trim
                             : imk_procedure_default(IMK_PROCEDURE_RATE_TABLE).trim;
     const bool kept = v->settings.keep_delay || shift.rival > ambiguous * shift.correlation;
+    const double misfit = own_part * log->record.dt;
     v->delay = -shift.offset;
-    v->delay_sigma = shift.sigma;
+    v->delay_sigma = sqrt(shift.sigma * shift.sigma + misfit * misfit);
     if (fabs(shift.offset) > 0.9 * trim)
         imki_find(&v->findings, IMK_FINDING_WARNING, "reference_delay", NULL,
-                  IMKI_NUMBERS(fabs(shift.offset), shift.offset < 0, shift.sigma, kept));
+                  IMKI_NUMBERS(fabs(shift.offset), shift.offset < 0, v->delay_sigma, kept));
     if (!kept)
         move_reference(aligned, lround(shift.offset / log->record.dt), scratch);
     return scratch->failed ? imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL) : IMK_OK;
