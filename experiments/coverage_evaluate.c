@@ -5,7 +5,9 @@
  *
  *     coverage_evaluate [TABLES] [SEED]
  *
- * Share of 95 % intervals that hold the truth, and the bias of the value in standard deviations. */
+ * Share of 95 % intervals that hold the truth, and the bias of the value in standard deviations.
+ * Then the same of the hysteresis of logs whose reference is late: a fifth of TABLES each. */
+#include "../tests/calibrate/delayed_reference.h"
 #include "../tests/calibrate/evaluation_session.h"
 
 #include <stdio.h>
@@ -13,6 +15,29 @@
 static const char *const names[EVALUATION_FIGURES] = {"precision", "sensitivity", "zero",
                                                       "accuracy",  "coverage",    "linearity",
                                                       "best",      "hysteresis",  "asymmetry"};
+
+static void cover_delay(double delay, int logs, uint64_t seed)
+{
+    delayed_reference *d = malloc(sizeof *d);
+    int held = 0, warned = 0;
+    double sum = 0.0, square = 0.0, late = 0.0;
+    for (int k = 0; d && k < logs; k++) {
+        delayed_log(d, delay, seed * 1000000 + (uint64_t)k);
+        if (!delayed_evaluate(d, false))
+            continue;
+        held +=
+            d->hysteresis.lower <= delayed_hysteresis && delayed_hysteresis <= d->hysteresis.upper;
+        warned += d->warned;
+        sum += d->hysteresis.value / logs;
+        late += d->delay / logs;
+        square += (d->delay - delay) * (d->delay - delay) / logs;
+    }
+    printf("reference %.3g s late: %d logs, found %.4f s (rms error %.1e s), told %.1f %%; "
+           "hysteresis 0.1 %%: %.4f %%, held %.2f %%\n",
+           delay, logs, late, sqrt(square), 100.0 * warned / logs, 100.0 * sum,
+           100.0 * held / logs);
+    free(d);
+}
 
 int main(int argc, char **argv)
 {
@@ -37,5 +62,8 @@ int main(int argc, char **argv)
                        100.0 * s->low / n, mean / sigma);
         }
     }
+    static const double delays[] = {0.0, 0.05, 0.5, -0.5, 1.3};
+    for (size_t k = 0; k < sizeof delays / sizeof *delays; k++)
+        cover_delay(delays[k], (tables + 4) / 5, seed);
     return 0;
 }

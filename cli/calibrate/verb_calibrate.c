@@ -102,6 +102,11 @@ static const option log_options[] = {
      .choices = "0..180",
      .help = "1 sigma of the attitude of each placement on a face; default 0.1deg for sixposition "
              "and ferraris"},
+    {"g-sensitivity-sigma", OPTION_QUANTITY, AT(settings.g_sensitivity_sigma), .value = "RATE",
+     .unit = "deg/h/g", .choices = "not negative",
+     .help = "1 sigma of the g-sensitivity of the gyros where a log with a reference does not "
+             "determine it, included in the uncertainty of the biases; default 36deg/h/g, or what "
+             "the log shows; 0deg/h/g: the model has the exact value"},
     {"mounting", OPTION_QUANTITY, AT(settings.mounting), .value = "ANGLE", .unit = "deg",
      .choices = "0..180",
      .help = "1 sigma of the unit's attitude on its fixture or table, which is the same for all "

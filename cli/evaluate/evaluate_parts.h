@@ -16,7 +16,7 @@ typedef struct evaluate_options {
     const char *unit, *serial, *operator_name, *laboratory, *date, *temperature;
     const char *plot, *report;
     double confidence;
-    bool levels, json, strict;
+    bool levels, json, strict, keep_delay;
 } evaluate_options;
 
 typedef struct evaluation {

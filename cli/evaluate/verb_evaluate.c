@@ -51,6 +51,8 @@ static const option test_options[] = {
      .help = "axis of the unit about which the column table_rate [deg/s] turns the unit"},
     {"section", OPTION_TEXT, SESSION(settings.section), .value = "COLUMN",
      .help = "column of texts that names the runs of a log"},
+    {"keep-delay", OPTION_FLAG, AT(keep_delay),
+     .help = "do not move a reference that comes later or earlier than the readings"},
     {"minimum", OPTION_QUANTITY, SESSION(settings.minimum), .value = "TIME", .unit = "s",
      .choices = "positive",
      .help = "shortest stretch of constant reference that counts; default 0.5s"},
@@ -198,6 +200,7 @@ static int evaluate(evaluation *v)
     settings.trim = logs->settings.trim;
     settings.settle = logs->settings.settle;
     settings.sections = logs->settings.section != NULL;
+    settings.keep_delay = v->options->keep_delay;
     (void)command_unless_memory(imk_evaluate_log_create(&settings, NULL, &v->log, NULL));
     int code = evaluate_read_limits(v);
     if (code < 0)

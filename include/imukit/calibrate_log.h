@@ -65,6 +65,8 @@ typedef struct imk_calibrate_log_settings {
                               NULL: the only column of texts, if there is one. With multiposition,
                               rests in rows without a text are then no holds */
     double placement;    /**< 1 sigma of the attitude of a face on the plate [rad] */
+    double g_sensitivity_sigma; /**< 1 sigma of a g-sensitivity that is not estimated [rad/s per
+                                   m/s^2] */
     double mounting;     /**< 1 sigma of the attitude of the unit on its fixture or table [rad] */
     double turn_angle;   /**< ferraris: angle of each turn about its axis, with sign [rad] */
     double initial_rest; /**< duration of the rest at the beginning [s] */

@@ -114,8 +114,15 @@ typedef struct imk_calibration {
     imk_model_parameter parameter[IMK_CORRELATED_MAX];
     double prior_sigma[IMK_CORRELATED_MAX]; /**< prior 1 sigma about the model's value; 0: no prior
                                                knowledge */
-    imk_triad_frame frame;                  /**< IMK_FRAME_UPPER by default */
-    double gravity;                         /**< local gravity [m/s^2] */
+    bool prior_guessed[IMK_CORRELATED_MAX]; /**< prior_sigma is what such terms usually have. The
+                                               log corrects it: where it leaves 3 degrees of freedom
+                                               or more, all such priors are multiplied by the factor
+                                               that the estimates show */
+    bool hidden[IMK_CORRELATED_MAX]; /**< with a prior: the parameter's uncertainty is part of the
+                                        others', but it is neither reported nor changed in the model
+                                        */
+    imk_triad_frame frame;           /**< IMK_FRAME_UPPER by default */
+    double gravity;                  /**< local gravity [m/s^2] */
     double latitude;   /**< geodetic [rad], for the Earth's rotation; NaN: not known; the sigma of
                           gyro readings at rest then includes the unknown rotation */
     double earth_rate; /**< default 7.292115e-5 rad/s; 0: the references contain no Earth rate, and
@@ -134,11 +141,17 @@ typedef struct imk_calibration {
 /** A perfect unit, nothing free, nothing observed, normal gravity at 45 deg and sea level, robust.
  */
 IMK_API void imk_calibration_default(imk_calibration *calibration);
-/** Make a parameter free, if it is not yet free.
+/** Make a parameter free, if it is not yet free. One with a guessed prior loses the prior.
  *  @return IMK_ERROR_ARGUMENT (no such parameter), IMK_ERROR_RANGE (IMK_CORRELATED_MAX are already
  *          free) */
 IMK_API imk_status imk_calibration_free(imk_calibration *calibration, int sensor, int term,
                                         int axis, int element);
+/** Make a parameter free with a guessed prior [SI of the parameter], if it is not yet free.
+ *  @param hidden  do not report it
+ *  @return errors of imk_calibration_free(); IMK_ERROR_ARGUMENT (sigma not above 0) */
+IMK_API imk_status imk_calibration_consider(imk_calibration *calibration,
+                                            imk_model_parameter parameter, double sigma,
+                                            bool hidden);
 /** Add an observation. @return its index, or -1 when the capacity is used up */
 IMK_API int imk_calibration_observe(imk_calibration *calibration,
                                     const imk_observation *observation);
@@ -173,7 +186,8 @@ typedef struct imk_calibration_result {
                                 agreement with placement_sigma, factor (1 or more), rms: the 1 sigma
                                 of a placement that the log itself shows [rad]; 0 degrees: the log
                                 does not test it */
-    imk_group_fit assumed;   /**< the same of parameters that have a prior_sigma */
+    imk_group_fit assumed; /**< the same of parameters whose prior_sigma is guessed; the factor may
+                              be below 1 */
     double chi_square, degrees_of_freedom; /**< of all observations, by their stated sigmas */
     size_t observations_refused, turns_refused;
     double fixture[IMK_FIXTURES_MAX][3]; /**< estimated mounting angles [rad] */

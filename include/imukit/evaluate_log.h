@@ -19,6 +19,7 @@ typedef struct imk_evaluate_log_settings {
                                        imk_procedure_settings; default NaN: the default there */
     bool sections;                /**< each section of a record is a run of its own; default
                                        false */
+    bool keep_delay;              /**< do not take out the delay of a reference; default false */
 } imk_evaluate_log_settings;
 
 /** The defaults named above. */
@@ -31,7 +32,9 @@ typedef struct imk_evaluate_log {
     imk_evaluate_channel channel[IMK_EVALUATE_CHANNELS];
     imk_evaluate_rest rest[IMK_EVALUATE_CHANNELS];
     imk_findings findings;
-    void *memory; /**< of the result; not for the caller */
+    double delay, delay_sigma; /**< of the reference of the last record behind its readings [s],
+                                  where it is more than a sample and 5 sigma; else 0 */
+    void *memory;              /**< of the result; not for the caller */
 } imk_evaluate_log;
 
 /** Begin an evaluation, without channels.
@@ -52,7 +55,8 @@ IMK_API bool imk_evaluate_is_table(size_t column_count, const imk_log_column *co
 IMK_API imk_status imk_evaluate_table(imk_evaluate_log *evaluation, const imk_log *table,
                                       imk_error *error);
 /** Add the readings of a record of a test with a reference: the mean of every stretch in which the
- *  reference is constant.
+ *  reference is constant. A delay of the reference is taken out, with a finding when it exceeds
+ * what is trimmed from each stretch.
  *  @param record  from imk_calibrate_record_load()
  *  @return with a finding in evaluation->findings, IMK_ERROR_KEY_MISSING (no reference), _EMPTY
  *          (no reference changes, or none stays constant), _DIMENSION, _RANGE; errors of

@@ -64,10 +64,14 @@ typedef struct imk_procedure_settings {
                                            default true, false */
     bool labelled_only; /**< multiposition: only rests within sections that have a label are holds;
                              default false */
-    double sine_block;  /**< rate-table: averaging time of samples where the reference is never
-                           constant [s]; 0 (default): single samples */
-    int temperature_order;        /**< thermal: order for the bias; 0 (default): chosen by
-                                     cross-validation, at most 5 */
+    double g_sensitivity_sigma; /**< rate-table, tumble, centrifuge: 1 sigma of each g-sensitivity
+                                   that is not determined or not estimated, as part of the other
+                                   sigmas [rad/s per m/s^2]; default 0.01 deg/s per g; 0: it is
+                                   exactly as in the model */
+    double sine_block;     /**< rate-table: averaging time of samples where the reference is never
+                              constant [s]; 0 (default): single samples */
+    int temperature_order; /**< thermal: order for the bias; 0 (default): chosen by
+                              cross-validation, at most 5 */
     int scale_temperature_order;  /**< thermal: order for the scale factor; -1 (default): none for
                                      one pose at rest, else chosen by cross-validation */
     double reference_temperature; /**< thermal [K]; NaN (default): 25 degC if the range contains it,

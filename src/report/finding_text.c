@@ -193,6 +193,10 @@ static const struct message {
     {"no_readings", "{record} needs the columns reference and reading"},
     {"no_steps", "the reference never stays constant for {0.3g} s, and the figures need steps; for "
                  "sines use imukit calibrate --procedure rate-table"},
+    {"reference_delay",
+     "the reference comes {0.4f} s {1?}later{1!}earlier{?} than the readings (1 sigma {2.2g} s): "
+     "{3?}the steps are compared as they stand, and the figures contain the delay{3!}it was moved "
+     "by this time; --keep-delay leaves it{?}"},
     {"no_reference", "{record} does not contain the reference motion of the unit; add --motion "
                      "PROGRAMME, or columns reference_rate_z [deg/s] … or table_rate [deg/s] with "
                      "--table-axis; for a unit at rest use --static {record}"},

@@ -20,6 +20,7 @@ typedef struct multiposition_session {
     imk_model truth;   /* what is simulated */
     imk_model drift;   /* its bias instability alone */
     imk_model nominal; /* what the solver is told */
+    double push;       /* 1 sigma of a force on every axis of each hold, alike [m/s^2] */
     imk_trajectory_piece *piece;
     size_t piece_capacity;
     imk_trajectory trajectory;
@@ -211,6 +212,21 @@ static inline void session_spoil(multiposition_session *b, int pose, imk_random 
     }
 }
 
+/* Every pose is off by as much on each axis. */
+static inline void session_push(multiposition_session *b, uint64_t seed, uint32_t run)
+{
+    double normal[3 * BENCH_POSES];
+    imk_random_normals(imk_random_seeded(seed), session_stream(run, 100), 0, 3 * BENCH_POSES,
+                       normal);
+    for (int i = 0; i < 3 * BENCH_POSES; i++) {
+        const size_t begin =
+            ((size_t)(i / 3) * (BENCH_HOLD + BENCH_TURN) + BENCH_TURN) * BENCH_RATE;
+        const double force = b->push * normal[i] * b->nominal.accel.sensitivity.value[i % 3];
+        for (size_t k = 0; k < (size_t)BENCH_HOLD * BENCH_RATE; k++)
+            b->value[3 + i % 3][begin + k] += floor(force + 0.5);
+    }
+}
+
 static inline imk_status session_observe(multiposition_session *b)
 {
     b->record = (imk_test_record){.name = "bench",
@@ -263,6 +279,8 @@ static inline imk_status session_run(multiposition_session *b, uint64_t seed, ui
         const int pose = (int)((i + session_uniform(random, stream, 3)) * BENCH_POSES / bad);
         session_spoil(b, pose, random, stream);
     }
+    if (status == IMK_OK && b->push > 0.0)
+        session_push(b, seed, run);
     if (status == IMK_OK)
         status = session_observe(b);
     if (status == IMK_OK)

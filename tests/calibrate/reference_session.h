@@ -85,6 +85,22 @@ static inline void session_rate_steps(session *b)
         }
 }
 
+/* The same in three attitudes, never upside down: the log does not tell the sum of the components
+ * of g-sensitivity from the bias. */
+static inline void session_rate_upright(session *b)
+{
+    static const double level[] = {0.0, 0.3, 0.8, 1.5, 2.2, 3.0};
+    for (int axis = 0; axis < 3; axis++) {
+        double rate[3], force[3];
+        session_along(axis, session_gravity, force);
+        for (int i = 0; i < 6; i++)
+            for (int sign = 1; sign >= (i > 0 ? -1 : 1); sign -= 2) {
+                session_along(axis, sign * level[i], rate);
+                session_go(b, rate, force, 0.5, 3.0);
+            }
+    }
+}
+
 /* Each axis: rest, sines of two frequencies, rest. */
 static inline void session_rate_sine(session *b)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A table in memory becomes a channel with figures; what is wrong with it is a finding. */
+#include "calibrate/delayed_reference.h"
 #include "check.h"
 
 #include "imukit/evaluate_log.h"
@@ -66,6 +67,47 @@ static void check_refused(const imk_log *log, imk_status status, const char *cod
     imk_evaluate_log_free(v);
 }
 
+/* A reference half a second late, or early: its last 0.3 s after the trim are of another level, ten
+ * times the hysteresis. The delay is met to a tenth of a sample, and the figure is as without. */
+static void test_late_reference(void **state)
+{
+    (void)state;
+    delayed_reference *d = calloc(1, sizeof *d);
+    for (int sense = -1; sense <= 1; sense += 2) {
+        delayed_log(d, 0.5 * sense, 7);
+        assert_true(delayed_evaluate(d, false));
+        CHECK_CLOSE(d->delay, 0.5 * sense, 0.1 * delayed_dt);
+        assert_true(d->warned);
+        CHECK_CLOSE(d->hysteresis.value, delayed_hysteresis, 0.05 * delayed_hysteresis);
+        assert_true(delayed_evaluate(d, true));
+        assert_true(d->warned);
+        assert_true(d->hysteresis.value > 5.0 * delayed_hysteresis);
+    }
+    free(d);
+}
+
+/* Sound logs: no delay is found beyond a sample, nothing is said, and the figure is the same as
+ * without a search. A delay below the trim is taken out without a word. */
+static void test_reference_in_time(void **state)
+{
+    (void)state;
+    delayed_reference *d = calloc(1, sizeof *d);
+    for (uint32_t seed = 0; seed < check_runs(20); seed++) {
+        delayed_log(d, 0.0, 100 + seed);
+        assert_true(delayed_evaluate(d, false));
+        CHECK_CLOSE(d->delay, 0.0, 0.0);
+        assert_false(d->warned);
+        const double value = d->hysteresis.value;
+        assert_true(delayed_evaluate(d, true));
+        CHECK_CLOSE(d->hysteresis.value, value, 0.0);
+    }
+    delayed_log(d, 0.06, 9);
+    assert_true(delayed_evaluate(d, false));
+    CHECK_CLOSE(d->delay, 0.06, 0.1 * delayed_dt);
+    assert_false(d->warned);
+    free(d);
+}
+
 static void test_refusals(void **state)
 {
     (void)state;
@@ -92,6 +134,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table),
+        cmocka_unit_test(test_late_reference),
+        cmocka_unit_test(test_reference_in_time),
         cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

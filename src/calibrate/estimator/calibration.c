@@ -27,6 +27,13 @@ void imk_calibration_default(imk_calibration *calibration)
     calibration->robust = true;
 }
 
+static void set_prior(imk_calibration *c, size_t p, double sigma, bool guessed, bool hidden)
+{
+    c->prior_sigma[p] = sigma;
+    c->prior_guessed[p] = guessed;
+    c->hidden[p] = hidden;
+}
+
 imk_status imk_calibration_free(imk_calibration *calibration, int sensor, int term, int axis,
                                 int element)
 {
@@ -36,13 +43,32 @@ imk_status imk_calibration_free(imk_calibration *calibration, int sensor, int te
     const imk_model_parameter wanted = {(uint8_t)sensor, (uint8_t)term, (uint8_t)axis,
                                         (uint8_t)element};
     for (size_t p = 0; p < calibration->parameter_count; p++)
-        if (memcmp(&calibration->parameter[p], &wanted, sizeof wanted) == 0)
+        if (memcmp(&calibration->parameter[p], &wanted, sizeof wanted) == 0) {
+            if (calibration->prior_guessed[p])
+                set_prior(calibration, p, 0.0, false, false);
             return IMK_OK;
+        }
     if (calibration->parameter_count >= IMK_CORRELATED_MAX)
         return IMK_ERROR_RANGE;
     calibration->parameter[calibration->parameter_count] = wanted;
-    calibration->prior_sigma[calibration->parameter_count++] = 0.0;
+    set_prior(calibration, calibration->parameter_count++, 0.0, false, false);
     return IMK_OK;
+}
+
+imk_status imk_calibration_consider(imk_calibration *calibration, imk_model_parameter parameter,
+                                    double sigma, bool hidden)
+{
+    const size_t before = calibration->parameter_count;
+    if (!(sigma > 0.0 && sigma < HUGE_VAL))
+        return IMK_ERROR_ARGUMENT;
+    for (size_t p = 0; p < before; p++)
+        if (memcmp(&calibration->parameter[p], &parameter, sizeof parameter) == 0)
+            return IMK_OK;
+    const imk_status status = imk_calibration_free(calibration, parameter.sensor, parameter.term,
+                                                   parameter.axis, parameter.element);
+    if (status == IMK_OK)
+        set_prior(calibration, before, sigma, true, hidden);
+    return status;
 }
 
 int imk_calibration_observe(imk_calibration *calibration, const imk_observation *observation)

@@ -19,7 +19,8 @@ static double prior_cost(imki_estimator *e, const imki_point *point, bool build)
     for (size_t g = 0; g < e->globals; g++) {
         double sigma = 0.0, from = 0.0;
         if (g < e->parameters) {
-            sigma = problem->prior_sigma[g] * e->factor[IMKI_PART_TERMS];
+            sigma = problem->prior_sigma[g] *
+                    (problem->prior_guessed[g] ? e->factor[IMKI_PART_TERMS] : 1.0);
             from = e->start[g];
         } else if ((int)g == e->vertical_global) {
             sigma = e->vertical_sigma;

@@ -312,7 +312,7 @@ int imki_placement_rows(const imki_estimator *e, const imki_point *point, size_t
 
 int imki_term_row(const imki_estimator *e, const imki_point *point, size_t p, imki_row *row)
 {
-    if (!(e->problem->prior_sigma[p] > 0.0))
+    if (!(e->problem->prior_sigma[p] > 0.0) || !e->problem->prior_guessed[p])
         return 0;
     *row = (imki_row){.part = IMKI_PART_TERMS,
                       .sensor = -1,

@@ -11,7 +11,7 @@
  *
  *     sum ln V + ln det N + sum residual^2/V + 2 (number of factors),
  *
- * the restricted likelihood [PATTERSON1971] and the price of a parameter [AKAIKE1974]. Axes that
+ * the restricted likelihood [PATTERSON1971] and the price of a parameter [AKAIKE1978]. Axes that
  * have the same sigmas cannot tell the first from the third; it is the same to them, and the first
  * stays. */
 #include "estimator_internal.h"

@@ -291,6 +291,8 @@ static imk_status enter_frame(imk_calibration *c, imk_error *error)
         if (row && frame == IMK_FRAME_SYMMETRIC && place.element < place.axis)
             continue;
         c->prior_sigma[kept] = c->prior_sigma[p];
+        c->prior_guessed[kept] = c->prior_guessed[p];
+        c->hidden[kept] = c->hidden[p];
         c->parameter[kept++] = place;
     }
     c->parameter_count = kept;

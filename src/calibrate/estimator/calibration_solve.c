@@ -206,8 +206,6 @@ static void fill_assumed(const imki_estimator *e, const imki_fit *fit, int part,
                          imk_group_fit *group)
 {
     const double factor = e->factor[part], left = fit->redundancy[part];
-    if (fit->scaled[part] == 0.0)
-        return;
     group->factor = factor;
     group->count = fit->count[part];
     group->chi_square = fit->square[part] * factor * factor;
@@ -232,23 +230,40 @@ static void fill_groups(const imki_estimator *e, const imki_fit *fit,
     fill_assumed(e, fit, IMKI_PART_TERMS, &result->assumed);
 }
 
+static bool is_hidden(const imk_calibration *c, size_t p)
+{
+    return c->hidden[p] && c->prior_sigma[p] > 0.0;
+}
+
+/* The parameters that are reported, and which of the estimator's each is; its number of parameters
+ * where the frame has taken it. @return how many */
+static size_t reported(const imki_estimator *e, const imk_calibration *calibration,
+                       imk_model_parameter parameter[IMK_CORRELATED_MAX],
+                       size_t from[IMK_CORRELATED_MAX])
+{
+    size_t count = 0;
+    for (size_t p = 0; p < calibration->parameter_count; p++) {
+        if (is_hidden(calibration, p))
+            continue;
+        from[count] = e->parameters;
+        for (size_t q = 0; q < e->parameters; q++)
+            if (memcmp(&e->problem->parameter[q], &calibration->parameter[p], sizeof *parameter) ==
+                0)
+                from[count] = q;
+        parameter[count++] = calibration->parameter[p];
+    }
+    return count;
+}
+
 /* The parameters as the caller has them; a symmetric frame has the other halves of its pairs too,
  * which were held at 0. */
 static imk_status fill_parameters(imki_estimator *e, const imk_calibration *calibration,
                                   const double *freedom, imk_calibration_result *result,
                                   double rotation[9])
 {
-    const size_t count = calibration->parameter_count;
     size_t from[IMK_CORRELATED_MAX];
-    for (size_t p = 0; p < count; p++) {
-        from[p] = e->parameters;
-        for (size_t q = 0; q < e->parameters; q++)
-            if (memcmp(&e->problem->parameter[q], &calibration->parameter[p],
-                       sizeof calibration->parameter[p]) == 0)
-                from[p] = q;
-    }
+    const size_t count = reported(e, calibration, result->parameter, from);
     result->parameter_count = count;
-    memcpy(result->parameter, calibration->parameter, count * sizeof *result->parameter);
     for (size_t p = 0; p < count; p++) {
         for (size_t q = 0; q < count; q++)
             result->covariance[p * count + q] =
@@ -258,6 +273,9 @@ static imk_status fill_parameters(imki_estimator *e, const imk_calibration *cali
         result->freedom[p] = from[p] < e->parameters ? freedom[from[p]] : 0.0;
     }
     result->model = e->problem->model;
+    for (size_t p = 0; p < e->parameters; p++)
+        if (is_hidden(e->problem, p))
+            *imk_model_parameter_at(&result->model, e->problem->parameter[p], NULL) = e->start[p];
     if (calibration->frame == IMK_FRAME_SYMMETRIC) {
         const imk_status status =
             imk_triad_frame_convert(&result->model, IMK_FRAME_SYMMETRIC, count, result->parameter,

@@ -172,7 +172,7 @@ static double next_square(const imki_estimator *e, const imki_fit *fit, int g, b
  * is never taken for better than stated. */
 static bool is_assumed(int part)
 {
-    return part == IMKI_PART_PLACEMENT || part == IMKI_PART_TERMS;
+    return part == IMKI_PART_PLACEMENT;
 }
 
 /* An added sigma that few axes show: its interval says how little that is. */

@@ -227,7 +227,7 @@ int imki_rows_of(imki_estimator *e, size_t k);
 /* The three rows of a placement, not whitened. @return their number; 0: not placed */
 int imki_placement_rows(const imki_estimator *e, const imki_point *point, size_t index,
                         imki_row *row);
-/* The row of what is known before of a parameter. @return 0: nothing is */
+/* The row of a guessed prior. @return 0: there is none */
 int imki_term_row(const imki_estimator *e, const imki_point *point, size_t p, imki_row *row);
 /* Variance of a row by what was stated of it. */
 static inline double imki_stated_variance(const imki_estimator *e, const imki_row *row)

@@ -52,6 +52,7 @@ imk_procedure_settings imk_procedure_default(imk_procedure procedure)
                                        .nonlinear = procedure == IMK_PROCEDURE_RATE_TABLE ||
                                                     procedure == IMK_PROCEDURE_CENTRIFUGE,
                                        .g_sensitivity = true,
+                                       .g_sensitivity_sigma = 0.01 * DEGREE / 9.80665,
                                        .scale_temperature_order = -1,
                                        .reference_temperature = (double)NAN};
     /* Faces of a housing are square to some tenths of a degree; a dividing head is exact. */
@@ -100,6 +101,8 @@ static imk_status check_settings(const imk_procedure_settings *s, imk_error *err
         {"steady_force", positive(s->steady_force), s->steady_force, "above 0"},
         {"minimum", positive(s->minimum), s->minimum, "above 0 seconds"},
         {"turn_angle", positive(fabs(s->turn_angle)), s->turn_angle, "an angle that is not 0"},
+        {"g_sensitivity_sigma", not_negative(s->g_sensitivity_sigma), s->g_sensitivity_sigma,
+         "0 or more rad/s per m/s^2"},
         {"sine_block", not_negative(s->sine_block), s->sine_block, "0 or more seconds"},
         {"temperature_order",
          s->temperature_order >= 0 && s->temperature_order <= IMK_TEMPERATURE_ORDER_MAX,

@@ -5,7 +5,7 @@
 
 static void want(imki_candidate *list, size_t *count, int sensor, int term, bool promised)
 {
-    list[(*count)++] = (imki_candidate){(uint8_t)sensor, (uint8_t)term, promised};
+    list[(*count)++] = (imki_candidate){(uint8_t)sensor, (uint8_t)term, promised, false};
 }
 
 /* Powers with q that are looked for: of the first degree alone, or of higher ones. */
@@ -33,8 +33,8 @@ static void want_linear(imki_candidate *list, size_t *count, int sensor, bool pr
 
 static void want_gravity(const imk_procedure_settings *s, imki_candidate *list, size_t *count)
 {
-    if (s->g_sensitivity)
-        want(list, count, IMK_GYRO, IMK_MODEL_G_SENSITIVITY, true);
+    want(list, count, IMK_GYRO, IMK_MODEL_G_SENSITIVITY, s->g_sensitivity);
+    list[*count - 1].hidden = !s->g_sensitivity;
     if (s->g2_sensitivity)
         want(list, count, IMK_GYRO, IMK_MODEL_G2_SENSITIVITY, true);
 }

@@ -29,7 +29,7 @@ static const double own_share = 1e-4, least_effect = 1e-3;
 typedef struct design {
     size_t columns;
     imk_model_parameter parameter[COLUMNS];
-    bool promised[COLUMNS];
+    bool promised[COLUMNS], hidden[COLUMNS];
     double normal[COLUMNS * COLUMNS];
     double weight;             /* sum of weights */
     double input, force, spin; /* largest input of the sensor, force, and rate^2 or acceleration */
@@ -155,13 +155,14 @@ static bool is_free(const imk_calibration *c, const imk_model_parameter *paramet
     return false;
 }
 
-static void add_column(design *d, imk_model_parameter parameter, bool promised)
+static void add_column(design *d, imk_model_parameter parameter, bool promised, bool hidden)
 {
     for (size_t i = 0; i < d->columns; i++)
         if (memcmp(&d->parameter[i], &parameter, sizeof parameter) == 0)
             return;
     if (d->columns < COLUMNS) {
         d->promised[d->columns] = promised;
+        d->hidden[d->columns] = hidden;
         d->parameter[d->columns++] = parameter;
     }
 }
@@ -182,7 +183,7 @@ static void collect(design *d, const imk_calibration *c, int sensor, int axis, s
     const imk_triad *triad = imk_model_triad(&c->model, sensor);
     for (size_t p = 0; p < c->parameter_count; p++)
         if (c->parameter[p].sensor == sensor && c->parameter[p].axis == axis)
-            add_column(d, c->parameter[p], false);
+            add_column(d, c->parameter[p], false, false);
     for (size_t i = 0; i < count; i++) {
         const int elements = imk_model_term_elements(sensor, candidate[i].term);
         for (int e = 0; candidate[i].sensor == sensor && e < elements; e++) {
@@ -191,7 +192,7 @@ static void collect(design *d, const imk_calibration *c, int sensor, int axis, s
             const bool diagonal =
                 p.term == IMK_MODEL_MISALIGNMENT && triad->axis_count == 3 && e == axis;
             if (!diagonal && !fixed_by_frame(c, &p))
-                add_column(d, p, candidate[i].promised);
+                add_column(d, p, candidate[i].promised, candidate[i].hidden);
         }
     }
 }
@@ -215,10 +216,10 @@ static void decide(design *d, const imk_calibration *c, bool accepted[COLUMNS])
         for (size_t i = 0; i < d->columns; i++) {
             const bool g = d->parameter[i].term == IMK_MODEL_G_SENSITIVITY;
             const bool already = is_free(c, &d->parameter[i]);
-            accepted[i] = (together || !g || already) && determined(d, i);
+            accepted[i] = !d->hidden[i] && (together || !g || already) && determined(d, i);
             if (accepted[i])
                 d->taken[d->taken_count++] = i;
-            else if (g && !already && !is_constant(d, i, product_with_bias(d, i)))
+            else if (g && !already && !d->hidden[i] && !is_constant(d, i, product_with_bias(d, i)))
                 torn = true;
         }
         if (!torn)
@@ -233,6 +234,19 @@ static void report(const imki_procedure_call *call, imk_model_parameter paramete
     if (f->undetermined_count < IMK_UNDETERMINED_MAX)
         f->undetermined[f->undetermined_count] = parameter;
     f->undetermined_count++;
+}
+
+/* A term that acts on the readings and is not determined is part of what the others are uncertain
+ * by: the bias of a gyro holds g-sensitivity times the mean force. */
+static imk_status consider(const imki_procedure_call *call, const design *d, size_t column)
+{
+    const double sigma = call->settings->g_sensitivity_sigma;
+    const bool no_estimate = is_constant(d, column, product_with_bias(d, column));
+    if (d->parameter[column].term != IMK_MODEL_G_SENSITIVITY || !(sigma > 0.0) ||
+        !(normal_at(d, column, column) > 0.0))
+        return IMK_OK;
+    return imk_calibration_consider(call->calibration, d->parameter[column], sigma,
+                                    d->hidden[column] || no_estimate);
 }
 
 static imk_status free_of_axis(const imki_procedure_call *call, int sensor, int axis, size_t count,
@@ -253,12 +267,10 @@ static imk_status free_of_axis(const imki_procedure_call *call, int sensor, int 
         const imk_model_parameter p = d->parameter[i];
         if (is_free(c, &p))
             continue;
-        if (!accepted[i]) {
-            if (d->promised[i])
-                report(call, p);
-            continue;
-        }
-        if (imk_calibration_free(c, p.sensor, p.term, p.axis, p.element) != IMK_OK)
+        if (!accepted[i] && d->promised[i])
+            report(call, p);
+        if ((accepted[i] ? imk_calibration_free(c, p.sensor, p.term, p.axis, p.element)
+                         : consider(call, d, i)) != IMK_OK)
             return imk_error_set(call->error, IMK_ERROR_RANGE, "parameters", NULL,
                                  "at most 64 parameters can be estimated at once");
     }

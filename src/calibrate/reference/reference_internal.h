@@ -48,6 +48,7 @@ const double *const *imki_reference_channels(const imk_test_record *record, int 
 typedef struct imki_candidate {
     uint8_t sensor, term;
     bool promised; /* told to the caller when it is not determined */
+    bool hidden;   /* not to be estimated, but what it may be is part of the other sigmas */
 } imki_candidate;
 enum { IMKI_CANDIDATES_MAX = 24 };
 

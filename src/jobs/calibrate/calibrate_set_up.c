@@ -28,6 +28,7 @@ imk_calibrate_log_settings imk_calibrate_log_default(void)
                                         .gravity = none,
                                         .frame = -1,
                                         .placement = none,
+                                        .g_sensitivity_sigma = none,
                                         .mounting = none,
                                         .turn_angle = none,
                                         .initial_rest = none,
@@ -121,6 +122,7 @@ static imk_procedure_settings settings_of(const imk_calibrate_log *b, imk_proced
     set_if(&s.stationary.minimum, o->minimum);
     set_if(&s.minimum, o->minimum);
     set_if(&s.placement_sigma, o->placement);
+    set_if(&s.g_sensitivity_sigma, o->g_sensitivity_sigma);
     if (b->calibration->frame != IMK_FRAME_REFERENCE && imk_procedure_is_known(procedure))
         s.fixture_sigma = loose_mounting;
     set_if(&s.fixture_sigma, o->mounting);

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Readings as channels: of tables as they stand, and of records of bench tests as the mean of every
  * stretch in which the reference is constant. */
-#include "imukit/evaluate_log.h"
-
-#include "jobs/arena_internal.h"
-#include "jobs/job_internal.h"
+#include "evaluate_job_internal.h"
 
 #include "imukit/channel_units.h"
 #include "imukit/reference_alignment.h"
@@ -399,16 +396,17 @@ imk_status imk_evaluate_record(imk_evaluate_log *evaluation, const imk_calibrate
         return imki_fail(&v->findings, error, IMK_ERROR_KEY_MISSING, "no_reference", NULL, 0, NULL);
     imki_arena scratch = {.allocator = ((imki_arena *)v->memory)->allocator};
     const double *zero = imki_arena_take(&scratch, log->record.count * sizeof *zero);
-    imk_status status = zero ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    const imk_test_record at_places = placed(log, zero), *record = &at_places;
+    imk_test_record record = placed(log, zero);
+    imk_status status = zero ? imki_evaluate_align(v, log, &scratch, &record, error)
+                             : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     for (int sensor = 0; sensor < 2; sensor++)
         for (int axis = 0;
-             status == IMK_OK && known[sensor] && axis < 3 && axis < record->axis_count[sensor];
+             status == IMK_OK && known[sensor] && axis < 3 && axis < record.axis_count[sensor];
              axis++)
-            if (record->reading[sensor][axis] != zero)
-                status = take_axis(v, record, zero, sensor, axis, error);
+            if (record.reading[sensor][axis] != zero)
+                status = take_axis(v, &record, zero, sensor, axis, error);
     imki_arena_free(&scratch);
-    v->run_count += v->settings.sections && record->section_count > 0 ? record->section_count : 1;
+    v->run_count += v->settings.sections && record.section_count > 0 ? record.section_count : 1;
     if (status == IMK_OK && v->channel_count == 0)
         status = imki_fail(&v->findings, error, IMK_ERROR_EMPTY, "no_change", NULL, 0, NULL);
     return status;

@@ -548,7 +548,7 @@ static void add_placements(const imk_calibrate_log *b, imk_verdict *v)
 {
     const double by_chance = 1e-3, degrees = 57.29577951308232;
     const imk_group_fit *fit = b->result ? &b->result->placement : NULL;
-    if (!fit || !(fit->factor > 0))
+    if (!fit || fit->count == 0)
         return;
     if (!(fit->degrees_of_freedom >= 3))
         add(v, say(IMK_FINDING_NOTE, "placement_untested",
@@ -560,6 +560,26 @@ static void add_placements(const imk_calibrate_log *b, imk_verdict *v)
                    "states: this is included in every uncertainty; check the faces and the plate, "
                    "or state --placement %.2gdeg",
                    fit->rms * degrees, fit->factor, fit->rms * degrees));
+}
+
+/* What a g-sensitivity that is not determined, or not estimated, does to the biases. */
+static void add_considered(const imk_calibrate_log *b, imk_verdict *v)
+{
+    const double si = 57.29577951308232 * 3600 * 9.80665;
+    const imk_group_fit *fit = b->result ? &b->result->assumed : NULL;
+    double sigma = 0;
+    if (!fit || fit->count == 0)
+        return;
+    for (size_t p = 0; p < b->calibration->parameter_count; p++)
+        if (b->calibration->prior_guessed[p])
+            sigma = b->calibration->prior_sigma[p] * fit->factor;
+    add(v,
+        say(IMK_FINDING_NOTE, "g_sensitivity_assumed",
+            "the attitudes do not separate the g-sensitivity of the gyros from their bias, or it "
+            "is not estimated: the uncertainty of the bias includes a g-sensitivity of %.2g "
+            "deg/h/g (1 sigma, %s); turn the unit upside down in each attitude, or state "
+            "--g-sensitivity-sigma",
+            sigma * si, fit->degrees_of_freedom >= 3 ? "as this log shows it" : "assumed"));
 }
 
 /* What a log showed already need not be said of the solution again, nor of each axis. */
@@ -607,6 +627,7 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
     add_opposite_turns(b, &v);
     const size_t of_logs = v.count;
     add_placements(b, &v);
+    add_considered(b, &v);
     for (size_t d = 0; d < b->diagnostic_count; d++) {
         const calibrate_message message = diagnostic_message(b, NULL, &b->diagnostic[d]);
         const bool of_scale = b->diagnostic[d].kind == IMK_DIAGNOSTIC_SCALE;
