@@ -25,6 +25,10 @@
 
 #define SAMPLES_FIRST ": {0} of {1} samples (first: row {2})"
 
+#define LONGEST_STRETCH                                                                            \
+    "{0} bad row{0s}, {1} missing sample{1s}: using the longest clean stretch, rows {2} to {3} "   \
+    "of "                                                                                          \
+    "{4}"
 #define UNORDERED "{0} row{0s} whose time does not increase: left out"
 #define DOUBLED                                                                                    \
     "{0} of {1} rows are the row before them once more, with its time and values: left out"
@@ -92,8 +96,8 @@ static const struct message {
     {"refused_standing", "time stands still in {0} row{0s}, first in row {1}; " HOW_TO_GO_ON},
     {"refused_missing",
      "{0} samples are missing in {1} gap{1s}, first before row {2}; " HOW_TO_GO_ON},
-    {"longest_stretch", "{0} bad row{0s}, {1} missing sample{1s}: using the longest clean stretch, "
-                        "rows {2} to {3} of {4}"},
+    {"longest_stretch", LONGEST_STRETCH},
+    {"stamps:longest_stretch", LONGEST_STRETCH},
     {"no_good_rows", "no two consecutive rows are good"},
     /* allan_log.c */
     {"no_value", "column {name} has no finite value in {0} rows; leave it out with --columns, or "

@@ -74,8 +74,11 @@ void imk_log_forget_faults(imk_log *log)
 static imk_status space(double rate, imk_gap_policy gaps, imk_even_record *record,
                         imk_findings *findings, imk_error *error)
 {
+    const size_t before = findings->count;
     const imk_status settled = imki_settle_times(rate, &record->log, findings, error);
-    if (settled != IMK_OK)
+    if (settled == IMK_ERROR_TIME_ORDER && gaps == IMK_GAPS_LONGEST)
+        findings->count = before; /* a stretch of it may have a rate */
+    else if (settled != IMK_OK)
         return settled;
     record->rows = record->log.rows;
     record->dt = rate > 0 ? 1 / rate : record->log.findings.interval;

@@ -9,8 +9,8 @@
  *
  * h follows from the shares p_c and p. The same at a distance at which nothing is held tells what
  * correlated axes and stretches of less noise make of it; the difference is what is held. A clock
- * holds regularly: the repeats among WINDOW rows vary far less than those of chance, whose variance
- * is their mean. */
+ * holds regularly: the number held of WINDOW rows hardly varies, and that equal by chance has the
+ * variance of a binomial distribution. */
 #include "record_repeats_internal.h"
 
 #include "jobs/job_internal.h"
@@ -27,7 +27,8 @@ static const double held_told = 0.01;
 static const double errors_beyond = 6.0;
 /* Values are fine when they are equal by chance this rarely; one channel alone must be. */
 static const double fine = 1e-3;
-/* Variance of the repeats in a window over their mean: a clock; not one stuck stretch. */
+/* Variance of the held samples in a window over that of as many independent ones: of a clock; of
+ * stretches that are not stuck. */
 static const double regular_most = 0.5, scattered_most = 2.0;
 /* Rows equal by chance alone on all axes: beyond this nothing can be told. */
 static const double chance_most = 0.5;
@@ -142,9 +143,11 @@ static void tell_sensor(const imki_repeat_counts *s, const char *name, double dt
     const double n = (double)s->rows, held = held_of(s, &chance);
     const double mean = s->sum / s->windows;
     const double variance = s->square_sum / s->windows - mean * mean;
+    const double by_chance = WINDOW * (1 - held) * chance * (1 - chance);
+    const double share = (variance - by_chance) / (WINDOW * held * (1 - held));
     const bool beyond = held > held_told && held > errors_beyond * sqrt(held / n);
-    const bool regular = variance < regular_most * mean;
-    const bool scattered = chance < fine && variance < scattered_most * mean;
+    const bool regular = share < regular_most;
+    const bool scattered = chance < fine && share < scattered_most;
     if (beyond && chance < chance_most && (regular || scattered))
         imki_find(findings, IMK_FINDING_WARNING, "stamps:held", name,
                   IMKI_NUMBERS(100 * held, (1 - held) / dt, 1 / dt));

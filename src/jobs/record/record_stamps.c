@@ -53,10 +53,13 @@ static bool is_rounded(const imk_log_findings *f)
     return f->gaps >= 8 && f->steady_gaps >= f->gaps * 7 / 10 && is_natural_tick(f->interval);
 }
 
+/* A stated rate so far off is none to count gaps by. */
+static const double other_rate = 0.1;
+
 bool imki_stamps_uneven(double rate, const imk_log_findings *f)
 {
     const size_t odd = f->uneven + f->repeats + f->reversals;
-    if (rate > 0 && 2 * f->gaps > f->rows)
+    if (rate > 0 && (2 * f->gaps > f->rows || fabs(f->mean_step * rate - 1) > other_rate))
         return true;
     return (odd >= 2 && (double)odd > few_rows * (double)f->rows) ||
            f->largest_reversal > 3 * f->interval || f->missing > 2 * f->rows ||
@@ -231,7 +234,8 @@ static void tell(const choice *c, double jitter, const imki_stamps *s, imk_findi
     const imki_stamp_reading *r = &c->reading;
     const imki_stamp_intervals *v = &c->intervals;
     const double rate = 1 / r->interval;
-    const bool grouped = v->rows_per_stamp > 1.2 && v->between > 1.2 * r->interval;
+    const bool grouped =
+        v->rows_per_stamp > 1.2 && (v->groups > 0 || v->between > 1.2 * r->interval);
     const double expected = grouped ? 1.5 * v->most_rows_per_stamp : 0;
     if (grouped)
         tell_groups(c, s->repeated, s->rows, findings);
@@ -366,6 +370,21 @@ imk_status imki_stamps_settle(imki_stamps *s, double rate, imk_log_findings *fou
     return status;
 }
 
+/* Take the doubled rows out of all columns. */
+static void drop_doubled(const imki_stamps *s, imk_log *log)
+{
+    size_t kept = 0;
+    for (size_t row = 0; row < s->rows; row++) {
+        if (s->same[row])
+            continue;
+        for (size_t c = 0; c < log->column_count && kept != row; c++)
+            log->data[c][kept] = log->data[c][row];
+        kept++;
+    }
+    log->rows = kept;
+    log->findings.doubled = 0;
+}
+
 imk_status imki_settle_times(double rate, imk_log *log, imk_findings *findings, imk_error *error)
 {
     const int time = imk_log_find(log, IMK_QUANTITY_TIME, -1);
@@ -386,6 +405,8 @@ imk_status imki_settle_times(double rate, imk_log *log, imk_findings *findings, 
         status = imki_stamps_settle(&s, rate, &log->findings, findings, error);
     if (status == IMK_OK)
         memcpy(log->data[time], s.time, log->rows * sizeof *s.time);
+    if (status == IMK_OK && log->findings.doubled > 0)
+        drop_doubled(&s, log);
     imki_stamps_free(&s);
     return status;
 }

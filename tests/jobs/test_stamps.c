@@ -1,0 +1,593 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Stamps that are no sample times: every row on its place, or a doubt. */
+#include "check.h"
+
+#include "imukit/jobs.h"
+#include "imukit/show.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROWS = 6000, MOST = 12000, AXES = 3 };
+
+static const double nan_value = (double)NAN;
+
+/* A log of white noise; `place` is the sample of each row. */
+typedef struct test_log {
+    double time[MOST], gyro[AXES][MOST], noise;
+    size_t place[MOST], rows;
+    double rate;
+} test_log;
+
+static uint64_t state;
+
+static double uniform(void)
+{
+    state += 0x9e3779b97f4a7c15u; /* splitmix64 */
+    uint64_t z = state;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+static double normal(void)
+{
+    return sqrt(-2 * log(1 - uniform())) * cos(6.283185307179586 * uniform());
+}
+
+static size_t below(size_t n)
+{
+    return (size_t)(uniform() * (double)n);
+}
+
+static void make(test_log *l, uint64_t seed, size_t rows, double rate)
+{
+    state = seed * 0x51a7;
+    l->rows = rows;
+    l->rate = rate;
+    l->noise = 1e-4;
+    for (size_t i = 0; i < rows; i++) {
+        l->time[i] = (double)i / rate;
+        l->place[i] = i;
+        for (int c = 0; c < AXES; c++)
+            l->gyro[c][i] = 1e-4 * sqrt(rate) * normal();
+    }
+}
+
+/* ---- faults ---- */
+
+static void group(test_log *l, double rows)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        l->time[i] = l->time[i - i % (size_t)rows];
+}
+
+static void round_down(test_log *l, double unit)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        l->time[i] = floor(l->time[i] / unit + 1e-9) * unit;
+}
+
+static void round_times(test_log *l, double unit)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        l->time[i] = floor(l->time[i] / unit + 0.5) * unit;
+}
+
+/* Bunches of rows, stamped 0.1 ms one after the other when the last one is there. */
+static void bunch(test_log *l, double rows)
+{
+    const size_t n = (size_t)rows;
+    for (size_t i = l->rows - l->rows % n; i-- > 0;)
+        l->time[i] = l->time[i - i % n + n - 1] + 1e-4 * (double)(i % n);
+}
+
+/* Pauses of 2 to 20 rows, `between` apart on average, all of which arrive at their end. */
+static void burst(test_log *l, double between)
+{
+    for (size_t i = 0;;) {
+        const size_t length = 2 + below(19);
+        i += 5 + (size_t)(-between * log(1 - uniform()));
+        if (i + length >= l->rows)
+            return;
+        for (size_t k = 0; k < length; k++, i++)
+            l->time[i] = l->time[i + length - k] - 2e-4 * (double)(length - k);
+    }
+}
+
+static void scatter(test_log *l, double share)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        l->time[i] += share * normal() / l->rate;
+}
+
+static void delay(test_log *l, double intervals)
+{
+    for (size_t i = 0; i < l->rows; i++) {
+        const double late = l->time[i] - intervals * log(1 - uniform()) / l->rate;
+        l->time[i] = i > 0 ? fmax(late, l->time[i - 1] + 1e-7) : late;
+    }
+}
+
+static void alternate(test_log *l, double share)
+{
+    for (size_t i = 1; i < l->rows; i += 2)
+        l->time[i] += share / l->rate;
+}
+
+/* 500 rows at the rate, 500 at 1/ratio of it, and so on. */
+static void change_rate(test_log *l, double ratio)
+{
+    for (size_t i = 1; i < l->rows; i++)
+        l->time[i] = l->time[i - 1] + (i / 500 % 2 ? ratio : 1) / l->rate;
+}
+
+static void step_back(test_log *l, double seconds)
+{
+    for (size_t i = l->rows / 2; i < l->rows; i++)
+        l->time[i] -= seconds;
+}
+
+static void wrap(test_log *l, double period)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        l->time[i] = fmod(l->time[i], period);
+}
+
+static void offset(test_log *l, double seconds)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        l->time[i] += seconds;
+}
+
+static void stretch(test_log *l, double share)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        l->time[i] *= 1 + share;
+}
+
+static void lack_values(test_log *l, double share)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        if (uniform() < share)
+            l->gyro[below(AXES)][i] = nan_value;
+}
+
+static void move_row(test_log *l, size_t from, size_t to)
+{
+    l->time[to] = l->time[from];
+    l->place[to] = l->place[from];
+    for (int c = 0; c < AXES; c++)
+        l->gyro[c][to] = l->gyro[c][from];
+}
+
+static void lose_rows(test_log *l, double share)
+{
+    size_t kept = 1;
+    for (size_t i = 1; i < l->rows; i++)
+        if (uniform() >= share || i + 1 == l->rows)
+            move_row(l, i, kept++);
+    l->rows = kept;
+}
+
+/* Gaps of 20 to 120 rows. */
+static void lose_blocks(test_log *l, double blocks)
+{
+    for (int b = 0; b < (int)blocks; b++) {
+        const size_t first = 300 + below(l->rows - 900), length = 20 + below(101);
+        for (size_t i = first + length; i < l->rows; i++)
+            move_row(l, i, i - length);
+        l->rows -= length;
+    }
+}
+
+/* Some rows twice. */
+static void double_rows(test_log *l, double share)
+{
+    size_t more = (size_t)(share * (double)l->rows), at = l->rows + more;
+    for (size_t i = l->rows; i-- > 0;) {
+        move_row(l, i, --at);
+        if (more > 0 && (double)more >= share * (double)i) {
+            move_row(l, i, --at);
+            more--;
+        }
+    }
+    l->rows += (size_t)(share * (double)l->rows);
+}
+
+/* The rows of a log of `ratio` times the rate hold the samples of this one. */
+static void hold(test_log *l, double ratio)
+{
+    const size_t rows = (size_t)((double)l->rows * ratio);
+    for (size_t i = rows; i-- > 0;) {
+        move_row(l, (size_t)((double)i / ratio), i);
+        l->time[i] = (double)i / (ratio * l->rate);
+        l->place[i] = i;
+    }
+    l->rows = rows;
+    l->rate *= ratio;
+}
+
+/* Digits of a share of the noise. */
+static void round_values(test_log *l, double share)
+{
+    const double unit = share * l->noise * sqrt(l->rate);
+    for (size_t i = 0; i < l->rows; i++)
+        for (int c = 0; c < AXES; c++)
+            l->gyro[c][i] = floor(l->gyro[c][i] / unit + 0.5) * unit;
+}
+
+typedef struct fault {
+    void (*make)(test_log *, double);
+    double strength;
+} fault;
+
+static void apply(test_log *l, const fault *faults)
+{
+    for (const fault *f = faults; f->make; f++)
+        f->make(l, f->strength);
+}
+
+/* ---- what the job makes of it ---- */
+
+static imk_record_source source_of(const test_log *l, double rate, imk_array_source *memory)
+{
+    static const char *const names[] = {"time", "gyro_x", "gyro_y", "gyro_z"};
+    const double *const data[] = {l->time, l->gyro[0], l->gyro[1], l->gyro[2]};
+    imk_record_source source;
+    imk_error error;
+    CHECK_OK(imk_array_source_make(4, names, data, l->rows, rate, memory, &source, &error));
+    return source;
+}
+
+static const imk_finding *find(const imk_findings *findings, const char *code)
+{
+    for (size_t k = 0; k < findings->count; k++)
+        if (strcmp(findings->item[k].code, code) == 0)
+            return &findings->item[k];
+    return NULL;
+}
+
+/* Any doubt about the stamps? */
+static const char *doubt_of(const imk_findings *findings)
+{
+    for (size_t k = 0; k < findings->count; k++)
+        if (strncmp(findings->item[k].code, "stamps:", 7) == 0 &&
+            findings->item[k].level == IMK_FINDING_WARNING)
+            return findings->item[k].code;
+    return NULL;
+}
+
+static void load(const test_log *l, imk_even_record *even, imk_findings *findings)
+{
+    imk_array_source memory;
+    imk_error error;
+    const imk_job job = {.memory = 0};
+    const imk_record_source source = source_of(l, 0, &memory);
+    findings->count = 0;
+    CHECK_OK(imk_even_record_load(&source, IMK_GAPS_KEEP, &job, even, findings, &error));
+}
+
+/* Rows whose value is not within `off` samples of its place. */
+static size_t misplaced(const test_log *l, const imk_even_record *even, size_t off)
+{
+    const double *data = imk_even_record_data(even, 0);
+    size_t wrong = 0;
+    for (size_t i = 0; i < l->rows; i++) {
+        const size_t due = l->place[i] - l->place[0];
+        bool found = isnan(l->gyro[0][i]);
+        for (size_t at = due > off ? due - off : 0; at <= due + off && at < even->rows; at++)
+            found = found || data[at] == l->gyro[0][i];
+        wrong += !found;
+    }
+    return wrong;
+}
+
+typedef struct kind {
+    const char *code; /* told with each strength; NULL: nothing about stamps */
+    fault faults[5];
+    size_t off;        /* places that the stamps leave open */
+    double wrong_most; /* share of the rows beyond that */
+    double rate;
+    size_t rows;
+} kind;
+
+static void check_kind(const kind *k, uint64_t seed)
+{
+    static test_log l;
+    imk_even_record even;
+    imk_findings findings;
+    const double rate = k->rate > 0 ? k->rate : 100;
+    make(&l, seed, k->rows > 0 ? k->rows : ROWS, rate);
+    apply(&l, k->faults);
+    load(&l, &even, &findings);
+    const size_t wrong = misplaced(&l, &even, k->off);
+    if ((double)wrong > k->wrong_most * (double)l.rows)
+        fail_msg("%s, seed %d: %zu rows misplaced", k->code ? k->code : "sound", (int)seed, wrong);
+    const double due = (double)(l.place[l.rows - 1] + 1);
+    CHECK_CLOSE((double)even.rows, due, (double)k->off + k->wrong_most * due);
+    CHECK_RELATIVE(even.dt * l.rate, 1.0, 2e-3);
+    if (k->code && !find(&findings, k->code))
+        fail_msg("%s is not told, seed %d", k->code, (int)seed);
+    if (!k->code && doubt_of(&findings))
+        fail_msg("%s is told of a sound log, seed %d", doubt_of(&findings), (int)seed);
+    imk_even_record_free(&even);
+}
+
+/* All rows are kept and on their places. Losses among stamps that are coarse or late are known to a
+ * place only as far as the stamps show it. */
+static void test_every_row_has_its_place(void **context)
+{
+    (void)context;
+    static const kind kinds[] = {
+        {"stamps:coarse", {{group, 2}}, 0, 0, 0, 0},
+        {"stamps:coarse", {{group, 3}}, 0, 0, 0, 0},
+        {"stamps:coarse", {{round_down, 1}}, 0, 0, 0, 0},
+        {"stamps:coarse", {{round_down, 1}}, 0, 0, 99.7, 0},
+        {"stamps:coarse", {{round_down, 1}, {offset, 1.7e9}}, 0, 0, 0, 0},
+        {"stamps:coarse", {{round_times, 1e-3}}, 0, 0, 2500, 0},
+        {"stamps:coarse", {{group, 2}, {lose_blocks, 3}}, 1, 0.02, 0, 0},
+        {"stamps:coarse", {{group, 10}, {lose_blocks, 3}, {lack_values, 0.01}}, 10, 0.02, 0, 0},
+        {"stamps:coarse", {{round_down, 1}, {lose_blocks, 2}}, 100, 0.02, 0, 0},
+        {"stamps:coarse", {{group, 2}, {lose_rows, 0.02}}, 2, 0.02, 0, 0},
+        {"stamps:bunched", {{bunch, 4}}, 0, 0, 0, 0},
+        {"stamps:bunched", {{bunch, 20}}, 0, 0, 0, 0},
+        {"stamps:bunched", {{bunch, 8}, {lose_blocks, 2}}, 8, 0.02, 0, 0},
+        {"stamps:late", {{burst, 300}}, 0, 0, 0, 0},
+        {"stamps:late", {{burst, 100}}, 0, 0, 0, 0},
+        {"stamps:late", {{burst, 30}, {offset, 1.7e9}}, 0, 0, 0, 0},
+        {"stamps:late", {{burst, 300}, {lose_blocks, 3}, {lack_values, 0.01}}, 20, 0.01, 0, 0},
+        {"stamps:late", {{burst, 100}, {lose_rows, 0.01}}, 20, 0.02, 0, 0},
+        {"stamps:late", {{delay, 1}}, 1, 0.01, 0, 0},
+        {"stamps:late", {{delay, 3}}, 5, 0.02, 0, 0},
+        {"stamps:late", {{delay, 1}, {lose_blocks, 2}}, 10, 0.02, 0, 0},
+        {"stamps:alternate", {{alternate, 0.2}}, 0, 0, 0, 0},
+        {"stamps:alternate", {{alternate, 0.4}}, 0, 0, 0, 0},
+        {"stamps:jumps", {{step_back, 0.3}}, 0, 0, 0, 0},
+        {"stamps:jumps", {{step_back, 500}}, 0, 0, 0, 0},
+        {"stamps:wrapped", {{wrap, 4.294967296}}, 0, 0, 0, 0},
+        {"stamps:wrapped", {{wrap, 60}, {round_times, 1e-6}}, 0, 0, 128, 9000},
+        {"stamps:rounded", {{round_times, 1e-3}}, 0, 0, 700, 0},
+        {"stamps:rounded", {{round_times, 1e-3}}, 0, 0, 950, 0},
+    };
+    const int seeds = check_quick() ? 1 : 4;
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++)
+        for (int seed = 1; seed <= seeds; seed++)
+            check_kind(&kinds[k], (uint64_t)seed);
+}
+
+/* No doubt about the stamps of sound logs, and the same places: 12 kinds of 8 logs in each run. */
+static void test_sound_stamps(void **context)
+{
+    (void)context;
+    static const kind kinds[] = {
+        {NULL, {{stretch, 1e-4}}, 0, 0, 0, 0},
+        {NULL, {{scatter, 0.02}, {round_times, 1e-6}}, 0, 0, 0, 0},
+        {NULL, {{scatter, 0.05}}, 0, 0, 250, 0},
+        {NULL, {{scatter, 0.035}, {lose_rows, 0.01}}, 0, 0, 0, 0},
+        {NULL, {{round_times, 1e-3}}, 0, 0, 128, 0},
+        {NULL, {{round_times, 1e-3}}, 0, 0, 400, 0},
+        {NULL, {{round_times, 1e-3}, {lose_blocks, 3}}, 0, 0, 128, 0},
+        {NULL, {{round_times, 1e-3}, {lose_blocks, 3}}, 0, 0, 400, 0},
+        {NULL, {{round_times, 1e-6}, {lose_blocks, 4}, {offset, 1.7e9}}, 0, 0, 0, 0},
+        {NULL, {{lose_rows, 0.05}}, 0, 0, 0, 0},
+        {NULL, {{lose_rows, 0.3}, {round_times, 1e-6}}, 0, 0, 0, 0},
+        {NULL, {{round_values, 1}, {lack_values, 0.02}}, 0, 0, 0, 0},
+        {NULL, {{round_values, 2}}, 0, 0, 0, 0},
+    };
+    const int seeds = check_quick() ? 1 : 8;
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++)
+        for (int seed = 1; seed <= seeds; seed++)
+            check_kind(&kinds[k], (uint64_t)(100 + seed));
+}
+
+/* ---- what cannot be repaired is told ---- */
+
+static void check_told(const char *code, const fault *faults, double least, double most, int number)
+{
+    static test_log l;
+    imk_even_record even;
+    imk_findings findings;
+    for (uint64_t seed = 1; seed <= 2; seed++) {
+        make(&l, seed, ROWS, 100);
+        apply(&l, faults);
+        load(&l, &even, &findings);
+        const imk_finding *f = find(&findings, code);
+        if (!f)
+            fail_msg("%s is not told, seed %d, %g and %g", code, (int)seed, faults[0].strength,
+                     faults[0].make ? faults[1].strength : 0);
+        assert_true(f->number[number] >= least && f->number[number] <= most);
+        imk_even_record_free(&even);
+    }
+}
+
+static void test_two_rates(void **context)
+{
+    (void)context;
+    const double ratios[] = {1.25, 1.6, 2};
+    for (int k = 0; k < 3; k++)
+        check_told("stamps:two_rates", (fault[]){{change_rate, ratios[k]}, {NULL, 0}}, 50, 110, 0);
+}
+
+static void test_doubled_rows(void **context)
+{
+    (void)context;
+    check_told("doubled", (fault[]){{double_rows, 0.005}, {NULL, 0}}, 30, 30, 0);
+    check_told("stamps:doubled", (fault[]){{double_rows, 0.05}, {NULL, 0}}, 300, 300, 0);
+    check_told("stamps:doubled", (fault[]){{double_rows, 1}, {NULL, 0}}, 6000, 6000, 0);
+}
+
+/* The share of rows held, and the rate of the sensor, also where digits repeat by chance. */
+static void test_held_samples(void **context)
+{
+    (void)context;
+    static const double ratios[] = {1.02, 1.1, 1.5, 2}, digits[] = {1e-6, 0.3, 1, 2};
+    for (int r = 0; r < 4; r++)
+        for (int d = 0; d < (r < 2 ? r + 2 : 4); d++) /* few do not stand out of coarse digits */
+            check_told("stamps:held",
+                       (fault[]){{round_values, digits[d]}, {hold, ratios[r]}, {NULL, 0}}, 98.5,
+                       101.5, 1);
+}
+
+static void test_a_stated_rate(void **context)
+{
+    (void)context;
+    static test_log l;
+    const struct {
+        double rate;
+        bool told;
+    } cases[] = {{100, false}, {100.05, false}, {101, true}, {50, true}, {200, true}, {333, true}};
+    make(&l, 1, ROWS, 100);
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        imk_array_source memory;
+        imk_even_record even;
+        imk_findings findings = {.count = 0};
+        imk_error error;
+        const imk_job job = {.memory = 0};
+        const imk_record_source source = source_of(&l, cases[k].rate, &memory);
+        CHECK_OK(imk_even_record_load(&source, IMK_GAPS_KEEP, &job, &even, &findings, &error));
+        assert_int_equal(even.rows, ROWS);
+        CHECK_CLOSE(even.dt, 1 / cases[k].rate, 0);
+        const imk_finding *f = find(&findings, "stamps:rate_differs");
+        assert_int_equal(f != NULL, cases[k].told);
+        if (f)
+            CHECK_RELATIVE(f->number[1], 100, 1e-9);
+        imk_even_record_free(&even);
+    }
+}
+
+/* Times of random events are those of no rate. */
+static void test_no_rate(void **context)
+{
+    (void)context;
+    static test_log l;
+    imk_array_source memory;
+    imk_even_record even;
+    imk_findings findings = {.count = 0};
+    imk_error error;
+    const imk_job job = {.memory = 0};
+    make(&l, 1, ROWS, 100);
+    for (size_t i = 1; i < l.rows; i++)
+        l.time[i] = l.time[i - 1] - 0.01 * log(1 - uniform());
+    const imk_record_source source = source_of(&l, 0, &memory);
+    CHECK_STATUS(imk_even_record_load(&source, IMK_GAPS_KEEP, &job, &even, &findings, &error),
+                 IMK_ERROR_TIME_ORDER);
+    assert_string_equal(imk_findings_failure(&findings)->code, "no_grid");
+    imk_even_record_free(&even);
+}
+
+/* ---- the estimates ---- */
+
+/* The white noise of the first channels is that of the same log with sound stamps. */
+static void check_noise(const fault *faults, uint64_t seed)
+{
+    static test_log l;
+    double clean = 0;
+    for (int faulty = 0; faulty < 2; faulty++) {
+        imk_array_source memory;
+        imk_identify_log *found;
+        imk_error error;
+        const imk_identify_log_settings settings = imk_identify_log_default();
+        make(&l, seed, ROWS, 100);
+        if (faulty)
+            apply(&l, faults);
+        const imk_record_source source = source_of(&l, 0, &memory);
+        CHECK_OK(imk_identify_log_run(&source, &settings, NULL, &found, &error));
+        const double n = found->result[0].term[IMK_NOISE_WHITE].value;
+        if (faulty)
+            CHECK_RELATIVE(n, clean, 0.01);
+        clean = n;
+        imk_identify_log_free(found);
+    }
+}
+
+static void test_noise(void **context)
+{
+    (void)context;
+    check_noise((fault[]){{group, 2}, {NULL, 0}}, 1);
+    check_noise((fault[]){{round_down, 1}, {NULL, 0}}, 2);
+    check_noise((fault[]){{burst, 100}, {NULL, 0}}, 3);
+    check_noise((fault[]){{delay, 1}, {NULL, 0}}, 4);
+    check_noise((fault[]){{step_back, 5}, {NULL, 0}}, 5);
+}
+
+/* The verdict of held samples and of late rows is no all-clear. */
+static void test_verdict(void **context)
+{
+    (void)context;
+    static test_log l;
+    static const fault faults[][2] = {{{hold, 1.5}, {NULL, 0}}, {{burst, 100}, {NULL, 0}}};
+    static const char *const codes[] = {"held", "late"};
+    for (int k = 0; k < 2; k++) {
+        imk_array_source memory;
+        imk_identify_log *found;
+        imk_error error;
+        const imk_identify_log_settings settings = imk_identify_log_default();
+        make(&l, 7, ROWS, 100);
+        apply(&l, faults[k]);
+        const imk_record_source source = source_of(&l, 0, &memory);
+        CHECK_OK(imk_identify_log_run(&source, &settings, NULL, &found, &error));
+        imk_result *result = imk_result_create(NULL);
+        const imk_verdict verdict = imk_identify_verdict(found, NULL, result);
+        bool told = false;
+        for (size_t m = 0; m < verdict.count; m++)
+            told = told || (strcmp(verdict.message[m].code, codes[k]) == 0 &&
+                            verdict.message[m].level == IMK_FINDING_WARNING);
+        assert_true(told);
+        imk_result_free(result);
+        imk_identify_log_free(found);
+    }
+}
+
+/* A record that is not held in memory has the same places: two rows per stamp, and a gap. */
+static void test_long_record(void **context)
+{
+    (void)context;
+    enum { LONG = (1 << 21) + 300000, GAP = 50 };
+    double *time = malloc(LONG * sizeof *time), *gyro = malloc(LONG * sizeof *gyro);
+    assert_non_null(time);
+    assert_non_null(gyro);
+    state = 1;
+    for (size_t i = 0; i < LONG; i++) {
+        const size_t place = i < 1000000 ? i : i + GAP;
+        time[i] = 0.02 * (double)(place / 2);
+        gyro[i] = 1e-3 * normal();
+    }
+    const char *const names[] = {"time", "gyro_x"};
+    const double *const data[] = {time, gyro};
+    imk_array_source memory;
+    imk_record_source source;
+    imk_identify_log *found;
+    imk_error error;
+    const imk_identify_log_settings settings = imk_identify_log_default();
+    CHECK_OK(imk_array_source_make(2, names, data, LONG, 0, &memory, &source, &error));
+    CHECK_OK(imk_identify_log_run(&source, &settings, NULL, &found, &error));
+    assert_false(found->screened);
+    assert_int_equal(found->record.rows, LONG + GAP);
+    assert_int_equal(found->record.missing, GAP);
+    CHECK_RELATIVE(found->record.dt, 0.01, 1e-6);
+    CHECK_RELATIVE(found->result[0].term[IMK_NOISE_WHITE].value, 1e-4, 0.01);
+    assert_non_null(find(&found->findings, "stamps:coarse"));
+    imk_identify_log_free(found);
+    free(time);
+    free(gyro);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_row_has_its_place),
+        cmocka_unit_test(test_sound_stamps),
+        cmocka_unit_test(test_two_rates),
+        cmocka_unit_test(test_doubled_rows),
+        cmocka_unit_test(test_held_samples),
+        cmocka_unit_test(test_a_stated_rate),
+        cmocka_unit_test(test_no_rate),
+        cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_verdict),
+        cmocka_unit_test(test_long_record),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
