@@ -152,6 +152,7 @@ static void note_outlier(imk_screener *s, size_t i, double distance)
     s->counting.last = place;
     s->found.largest_outlier = fmax(s->found.largest_outlier, distance);
     s->mark[i] |= IMKI_MARK_OUTLIER;
+    s->marked = true;
 }
 
 static void assess(imk_screener *s, const stretch *in, size_t i)
