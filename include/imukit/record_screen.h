@@ -23,11 +23,11 @@ typedef struct imk_screen_count {
 /** Settings of the search for faults. Start from imk_screen_default(), then change fields. */
 typedef struct imk_screen_settings {
     uint32_t cookie;
-    double dt;           /**< sample interval [s]; must be set */
-    double false_alarm;  /**< chance that an outlier is found in 1e9 samples of Gaussian noise
-                            without faults; default 1e-3 */
-    double significance; /**< false-alarm rate of warm-up, temperature slope and steps, each;
-                            default 0.001 */
+    double dt;                 /**< sample interval [s]; must be set */
+    double false_alarm;        /**< chance that an outlier is found in 1e9 samples of Gaussian noise
+                                  without faults; default 1e-3 */
+    double significance;       /**< false-alarm rate of warm-up, temperature slope and steps, each;
+                                  default 0.001 */
     const double *temperature; /**< n values [K or degC], NaN where missing; NULL: none */
 } imk_screen_settings;
 
@@ -52,8 +52,8 @@ typedef struct imk_screen {
     bool heavy_tails;
     double core; /**< standard deviation within 32 samples by the median, which tails do not move,
                     over that by the mean square; 1 for normal noise */
-    double noise_scatter; /**< relative standard deviation of the variance within 32 samples over
-                             the record, by its scatter between batches; 0: too short */
+    double noise_scatter;   /**< relative standard deviation of the variance within 32 samples over
+                               the record, by its scatter between batches; 0: too short */
     imk_screen_count stuck; /**< samples in runs of one value that are longer than the noise allows,
                                without the first sample of each run */
     size_t longest_stuck;   /**< samples in the longest run */
@@ -63,13 +63,13 @@ typedef struct imk_screen {
     double saturation_low, saturation_high;
     double clipped_deviation; /**< standard deviation of normal noise over that of the samples with
                                  everything beyond these values put onto them; 1: none is */
-    double clipped_gain; /**< how far a slow change, smaller than the noise, shows: the share of
-                            samples between these values */
+    double clipped_gain;   /**< how far a slow change, smaller than the noise, shows: the share of
+                              samples between these values */
     double clipped_misfit; /**< relative difference of the deviation from that of such noise */
-    double repeated;   /**< share of samples equal to the one before */
-    double resolution; /**< smallest step between values; 0 when none is detected */
-    double deviation;  /**< of the samples about their mean */
-    double noise;      /**< standard deviation within 32 samples, by the median range */
+    double repeated;       /**< share of samples equal to the one before */
+    double resolution;     /**< smallest step between values; 0 when none is detected */
+    double deviation;      /**< of the samples about their mean */
+    double noise;          /**< standard deviation within 32 samples, by the median range */
 
     imk_screen_count steps; /**< sudden lasting changes of the level, at most IMK_SCREEN_STEPS;
                                first: index of the largest */

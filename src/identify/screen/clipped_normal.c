@@ -53,7 +53,7 @@ imki_clipped imki_clipped_normal(const double share[2], const double limit[2], d
                          (share[0] * (first - edge[0]) * (share[0] > 0) +
                           share[1] * (edge[1] - first) * (share[1] > 0));
     const double rounded = variance + outer + half * half / 3;
-    c.deviation = 1 / sqrt(rounded);
+    c.deviation = sqrt((1 + half * half / 3) / rounded);
     c.gain = 1 - share[0] - share[1];
     c.misfit = fabs(deviation / (sigma * sqrt(rounded)) - 1);
     return c;

@@ -28,6 +28,7 @@ static const double pi = 3.14159265358979324;
 
 typedef struct jump_search {
     size_t n;
+    double empty;                            /* share of the means that lie on lines */
     double *mean;                            /* of the caller */
     double *cosine;                          /* cos(2 pi i/M) */
     double *flicker, *walk;                  /* spectra for amount 1 */
@@ -150,7 +151,9 @@ static double local_noise(const jump_search *j, size_t border)
     for (size_t i = 1; i < j->n; i++)
         sorted[i - 1] = fabs(j->mean[i] - j->mean[i - 1]);
     imki_sort(sorted, j->n - 1);
-    return here > 1.5 * sorted[(j->n - 1) / 2] ? here / sorted[(j->n - 1) / 2] : 1;
+    /* those on lines hardly differ */
+    const double all = sorted[(size_t)((double)(j->n - 1) * 0.5 * (1 + j->empty))];
+    return here > 1.5 * all ? here / all : 1;
 }
 
 /* The border whose jump is the most significant; its size and significance. */
@@ -218,7 +221,7 @@ static double judge(jump_search *j, size_t border, double *size)
 
 /* Look for one more jump; it is taken out if its significance, a square, is above what is due.
  * @return the border, or 0; significance and size are set */
-static size_t next_jump(jump_search *j, double share, double due, double *square, double *size)
+static size_t next_jump(jump_search *j, double due, double *square, double *size)
 {
     const double promising = 3.5;
     double z;
@@ -233,7 +236,7 @@ static size_t next_jump(jump_search *j, double share, double due, double *square
     take_out(j, border, *size);
     transform(j, j->mean);
     const double gain = fit(j) - without;
-    *square = fmin(2 * gain, judge(j, border, size)) * share / (local * local);
+    *square = fmin(2 * gain, judge(j, border, size)) * (1 - j->empty) / (local * local);
     memcpy(j->mean, j->kept, j->n * sizeof *j->mean);
     if (!(*square > due))
         return 0;
@@ -249,10 +252,11 @@ size_t imki_jumps_find(size_t n, double *mean, double empty, double significance
     size_t count = 0;
     lay_out(j, n, room);
     j->mean = mean;
+    j->empty = empty;
     *gain = 0;
     for (size_t round = 0; round < 3 * most; round++) {
         double square, change;
-        const size_t border = next_jump(j, 1 - empty, z * z, &square, &change);
+        const size_t border = next_jump(j, z * z, &square, &change);
         const size_t at = border > 0 ? entry_of(count, place, border) : most;
         if (at == most)
             break;

@@ -8,7 +8,8 @@
  *
  * Heavy tails: the spectrum of n independent samples of kurtosis k scatters as that of 2 n/(k - 1)
  * normal ones, and bursts make it worse. The variance within blocks, which is what white noise is,
- * shows both by its scatter between batches. */
+ * shows both by its scatter between batches. Where this is much wider than the interval, the
+ * interval is made as wide, whatever the tails. */
 #include "screener_internal.h"
 
 #include "imukit/distributions.h"
@@ -36,11 +37,14 @@ static void undo_clipping(const imk_screen *found, imk_identification *r)
         stretch(&r->gauss_markov[i].sigma, slow, 0.25 * (slow - 1) + wider);
 }
 
+/* By chance the scatter of ten batches is half as much again. */
 static void widen_white(const imk_screen *found, double confidence, imk_identification *r)
 {
     imk_estimate *white = &r->term[IMK_NOISE_WHITE];
     const double z = -imk_normal_quantile(0.5 * (1 - confidence));
     const double half = 0.5 * found->noise_scatter * z * white->value;
+    if (!found->heavy_tails && half < 0.75 * (white->upper - white->lower))
+        return;
     white->lower = fmin(white->lower, fmax(0, white->value - half));
     white->upper = fmax(white->upper, white->value + half);
     white->sigma = fmax(white->sigma, half / z);
@@ -62,6 +66,6 @@ void imk_screen_adjust(const imk_screen *found, unsigned what, double confidence
         result->verdict |= IMK_VERDICT_SATURATED;
     if (clipped && (what & IMK_SCREEN_SATURATED))
         undo_clipping(found, result);
-    if (found->heavy_tails)
+    if (result->term[IMK_NOISE_WHITE].present)
         widen_white(found, confidence, result);
 }

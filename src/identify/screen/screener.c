@@ -17,7 +17,8 @@ enum {
     BLOCK = IMKI_SCREEN_BLOCK,
     MARGIN = 2 * IMKI_SCREEN_REACH + 2,
     RESOLVED_EVERY = 8, /* chunks whose values are looked at for a step */
-    RESOLVED_OF = 2048  /* samples of them */
+    RESOLVED_OF = 2048, /* samples of them */
+    CORE_EVERY = 4      /* chunks whose median deviation is taken */
 };
 
 imk_screen_settings imk_screen_default(void)
@@ -91,6 +92,14 @@ imk_status imk_screener_begin(const imk_screen_settings *settings, unsigned what
 
 /* ---- a new chunk ----------------------------------------------------------------------------- */
 
+static bool all_there(size_t count, const double *x)
+{
+    bool all = true;
+    for (size_t i = 0; i < count; i++)
+        all &= x[i] - x[i] == 0;
+    return all;
+}
+
 /* What is not finite is missing. */
 static void count_missing(imk_screener *s, size_t first, size_t count, double *samples)
 {
@@ -105,43 +114,6 @@ static void count_missing(imk_screener *s, size_t first, size_t count, double *s
         f->missing.runs += s->counting.run++ == 0;
         f->longest_hole = s->counting.run > f->longest_hole ? s->counting.run : f->longest_hole;
     }
-}
-
-static double root_sum(double a, double b)
-{
-    const double large = fmax(a, b), small = fmin(a, b);
-    return large > 0 ? large * sqrt(1 + small / large * (small / large)) : 0;
-}
-
-/* Mean and root sum of squares about it, joined with those before [CHAN1983, (2.1)]; scaled, so
- * that squares neither overflow nor vanish. */
-static void add_moments(imk_screener *s, size_t count, const double *samples)
-{
-    double size = 0, sum = 0, squares = 0, present = 0;
-    int exponent;
-    for (size_t i = 0; i < count; i++) {
-        size = fmax(size, fabs(samples[i])); /* the number, when one of them is none */
-        present += samples[i] == samples[i];
-    }
-    if (!(present > 0))
-        return;
-    double origin = 0;
-    for (size_t i = count; i-- > 0;)
-        origin = samples[i] == samples[i] ? samples[i] : origin;
-    frexp(size, &exponent);
-    const double scale = ldexp(1, exponent < -1000 ? 1000 : -exponent);
-    for (size_t i = 0; i < count; i++) {
-        const double d = samples[i] == samples[i] ? samples[i] * scale - origin * scale : 0;
-        sum += d;
-        squares += d * d;
-    }
-    const double variance = squares - sum * sum / present;
-    const double norm = variance > 0 ? sqrt(variance) / scale : 0;
-    const double before = (double)s->found.present, all = before + present;
-    const double mean = origin + sum / present / scale, apart = before > 0 ? mean - s->mean : 0;
-    s->norm = root_sum(root_sum(s->norm, norm), fabs(apart) * sqrt(before / all * present));
-    s->mean = before > 0 ? s->mean + apart * (present / all) : mean;
-    s->found.present += (size_t)present;
 }
 
 static void find_step(imk_screener *s, size_t index, size_t count, const double *samples)
@@ -160,112 +132,44 @@ static void take_chunk(imk_screener *s, int at)
     const size_t index = s->chunk + (size_t)at, count = s->count[at];
     double *samples = s->raw[at];
     s->found.n += count;
-    count_missing(s, index * CHUNK, count, samples);
-    add_moments(s, count, samples);
-    imki_screen_repeats(s, count, samples);
+    const size_t before = s->found.missing.count;
+    const bool whole = all_there(count, samples);
+    if (whole)
+        s->counting.run = 0;
+    else
+        count_missing(s, index * CHUNK, count, samples);
+    imki_screen_moments(s, count, samples, s->found.missing.count - before);
+    imki_screen_repeats(s, at, whole);
 }
 
 /* ---- a decided chunk ------------------------------------------------------------------------- */
 
-/* Sum of the variances of whole blocks, and how many there are. */
-static size_t fast_variance(size_t count, const double *samples, double *total)
+/* The chunk without samples that have one of these marks. */
+static void mark_out(const imk_screener *s, unsigned marks, double *out)
 {
-    size_t blocks = 0;
-    for (size_t i = 0; i + BLOCK <= count; i += BLOCK) {
-        const double origin = samples[i];
-        double sum[8] = {0}, square[8] = {0};
-        for (size_t k = i; k < i + BLOCK; k += 8)
-            for (size_t l = 0; l < 8; l++) {
-                const double d = samples[k + l] - origin;
-                sum[l] += d;
-                square[l] += d * d;
-            }
-        for (size_t l = 1; l < 8; l++) {
-            sum[0] += sum[l];
-            square[0] += square[l];
-        }
-        const double variance = (square[0] - sum[0] * sum[0] / BLOCK) / (BLOCK - 1);
-        const bool whole = variance == variance;
-        *total += whole ? variance : 0;
-        blocks += whole;
-    }
-    return blocks;
+    memcpy(out, s->raw[0], s->count[0] * sizeof *out);
+    for (size_t i = 0; s->marked && i < s->count[0]; i++)
+        out[i] = s->mark[i] & marks ? (double)NAN : out[i];
 }
 
-static void add_batch(imki_batches *b, double blocks, double sum, double enough)
+/* To the sink, without what is to be taken out. */
+static void hand_on(imk_screener *s)
 {
-    b->blocks += blocks;
-    b->sum += sum;
-    if (b->blocks < enough)
+    const unsigned stuck = s->what & IMK_SCREEN_STUCK ? IMKI_MARK_STUCK : 0;
+    if (!s->sink)
         return;
-    const double mean = b->sum / b->blocks;
-    b->count++;
-    b->total += mean;
-    b->squares += mean * mean;
-    b->blocks = b->sum = 0;
-}
-
-/* Fast variance in batches of about 1024, 8192 and 65536 samples. */
-static void add_variances(imk_screener *s)
-{
-    enum { PIECE = 1024 };
-    for (size_t from = 0; from < s->count[0]; from += PIECE) {
-        const size_t left = s->count[0] - from, count = left < PIECE ? left : PIECE;
-        double sum = 0;
-        const double here = (double)fast_variance(count, s->loose + from, &sum);
-        if (!(here > 0))
-            continue;
-        s->fast += sum;
-        s->fast_blocks += here;
-        for (int b = 0; b < IMKI_SCREEN_BATCHES; b++)
-            add_batch(&s->batches[b], here, sum, b == 0 ? 16 : b == 1 ? 200 : 1600);
-    }
-}
-
-/* Median distance of one sample of each block from the mean of the block. */
-static void add_core(imk_screener *s)
-{
-    double *distance = s->value;
-    size_t blocks = 0;
-    for (size_t i = 0, turn = 0; i + BLOCK <= s->count[0]; i += BLOCK, turn++) {
-        double sum = 0;
-        for (size_t k = i; k < i + BLOCK; k++)
-            sum += s->loose[k] - s->loose[i];
-        const double d = s->loose[i + turn % BLOCK] - s->loose[i] - sum / BLOCK;
-        distance[blocks] = fabs(d);
-        blocks += d == d;
-    }
-    if (blocks < BLOCK)
-        return;
-    imki_sort(distance, blocks);
-    s->core_sum += distance[blocks / 2];
-    s->core_count++;
-}
-
-/* What is handed on: without what is to be taken out. */
-static void split(imk_screener *s)
-{
-    const bool stuck = s->what & IMK_SCREEN_STUCK, outliers = s->what & IMK_SCREEN_OUTLIERS;
-    for (size_t i = 0; i < s->count[0]; i++) {
-        const double gone = (double)NAN, sample = s->raw[0][i];
-        const bool out = s->mark[i] & IMKI_MARK_OUTLIER;
-        s->loose[i] = stuck && (s->mark[i] & IMKI_MARK_STUCK) ? gone : sample;
-        s->clean[i] = out ? gone : s->loose[i];
-    }
-    if (s->sink) {
-        double *given = outliers ? s->clean : s->loose;
-        s->sink(s->context, s->count[0], s->loose, given);
-    }
+    mark_out(s, stuck, s->loose);
+    if (s->what & IMK_SCREEN_OUTLIERS)
+        mark_out(s, stuck | IMKI_MARK_OUTLIER, s->clean);
+    const double *given = s->what & IMK_SCREEN_OUTLIERS ? s->clean : s->loose;
+    s->sink(s->context, s->count[0], s->loose, given);
 }
 
 static void add_ends(imk_screener *s)
 {
-    double low = HUGE_VAL, high = -HUGE_VAL;
+    double low, high;
     const size_t place = s->chunk * CHUNK;
-    for (size_t i = 0; i < s->count[0]; i++) {
-        low = s->clean[i] < low ? s->clean[i] : low;
-        high = s->clean[i] > high ? s->clean[i] : high;
-    }
+    imki_screen_extremes(s->count[0], s->clean, &low, &high);
     const imki_ends *top = &s->high, *bottom = &s->low;
     if (top->distinct < IMKI_SCREEN_ENDS || high >= top->value[IMKI_SCREEN_ENDS - 1])
         imki_ends_add(&s->high, place, s->count[0], s->clean, 1);
@@ -277,14 +181,16 @@ static void add_ends(imk_screener *s)
 static void decide(imk_screener *s)
 {
     memset(s->mark, 0, s->count[0]);
+    s->marked = false;
     find_step(s, s->chunk, s->count[0], s->raw[0]);
     imki_screen_stuck(s);
     imki_screen_outliers(s);
-    split(s);
-    add_variances(s);
-    add_core(s);
-    for (size_t i = 0; i < s->count[0]; i++)
-        s->clean[i] = s->mark[i] ? (double)NAN : s->raw[0][i];
+    hand_on(s);
+    mark_out(s, IMKI_MARK_STUCK, s->loose);
+    mark_out(s, IMKI_MARK_STUCK | IMKI_MARK_OUTLIER, s->clean);
+    imki_screen_variances(s);
+    if (s->chunk % CORE_EVERY == 0)
+        imki_screen_core(s);
     add_ends(s);
     imki_levels_add(&s->levels, s->count[0], s->clean, s->thermal ? s->warm[0] : NULL);
     s->chunk++;
@@ -299,6 +205,8 @@ static void rotate(imk_screener *s)
     s->warm[1] = warm;
     s->count[0] = s->count[1];
     s->count[1] = 0;
+    s->chunk_repeats[0] = s->chunk_repeats[1];
+    s->chunk_repeats[1] = 0;
 }
 
 void imk_screener_add(imk_screener *s, size_t count, const double *samples,

@@ -87,7 +87,7 @@ static bool piles_on_grid(const imki_ends *e, double on, double next, double q, 
     const double own = imk_normal_probability(-a) - beyond;
     const double other = imk_normal_probability(-b) - imk_normal_probability(-a);
     const double sound = own / (own + other), clipped = (own + beyond) / (own + beyond + other);
-    return beyond * present > 15 && exceeds(on, on + next, 0.5 * (sound + clipped)) &&
+    return beyond * present > 15 && on > 0.5 * (sound + clipped) * (on + next) &&
            exceeds(on, on + next, sound);
 }
 

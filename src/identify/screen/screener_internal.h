@@ -64,13 +64,14 @@ struct imk_screener {
     double *loose, *clean, *value;
     uint32_t *place;
     unsigned char *mark;
+    bool marked;  /* is any sample of the chunk? */
     double *room; /* all of these arrays, for other use at the end */
     size_t room_count;
     size_t count[2], chunk; /* samples in raw[]; number of chunks decided */
     bool thermal;
     /* Repeats: shares of stretches of 512 samples, the last ones in turn. */
     double share[IMKI_SCREEN_SHARES];
-    size_t shares, repeats, compared;
+    size_t shares, repeats, compared, chunk_repeats[2];
     double last; /* sample */
     /* The run of one value that the last chunk ended with. */
     double run_value;
@@ -94,9 +95,17 @@ struct imk_screener {
 /* screener.c: decide what has not been decided yet. */
 void imki_screen_flush(imk_screener *screener);
 
+/* screener_moments.c */
+void imki_screen_extremes(size_t count, const double *samples, double *low, double *high);
+/* Mean and deviation of a new chunk join those before. */
+void imki_screen_moments(imk_screener *s, size_t count, const double *samples, size_t missing);
+/* Variance within blocks of 32 samples of `loose`: in batches; and by the median. */
+void imki_screen_variances(imk_screener *s);
+void imki_screen_core(imk_screener *s);
+
 /* screener_stuck.c */
-/* Shares of repeats of a new chunk. */
-void imki_screen_repeats(imk_screener *s, size_t count, const double *samples);
+/* Shares of repeats of a new chunk, raw[at]. @param whole  nothing is missing in it */
+void imki_screen_repeats(imk_screener *s, int at, bool whole);
 /* Longest run of one value that the noise allows, by the last shares. */
 size_t imki_screen_stuck_limit(const imk_screener *s);
 /* Mark stuck samples of raw[0]; raw[1] tells how the last run goes on. */

@@ -8,9 +8,10 @@
  *
  *     z scale + 3/2 step,   z = normal quantile of false_alarm/(2 n), n = 1e9
  *
- * (coarse steps: the rounding of sample and median adds up to one and a half of them), and 9 times
- * the scale of its own neighbourhood: where a part of a chunk is noisier, that part is not made of
- * outliers. Up to 15 neighbouring outliers are seen; more of them are a jump.
+ * (coarse steps: the rounding of sample and median adds up to one and a half of them), 9 times the
+ * scale of its own neighbourhood, and 6 times that of the 15 samples on either side: where a part
+ * of a chunk is noisier, that part is not made of outliers, its edges included. Up to 15
+ * neighbouring outliers are seen; more of them are a jump.
  *
  * Samples beyond 5 scales that are no outliers are counted: noise with heavy tails has many, faults
  * have none.
@@ -49,16 +50,11 @@ static void insertion_sort(double *a, size_t count)
     }
 }
 
-/* Median of the samples around one, and of their distances from it. At the ends of the record the
- * window is the first or last one. */
-static double level_around(const stretch *s, size_t i, double *spread)
+/* Median of some values, at most WINDOW, and the scale of their distances from it. */
+static double level_of(const double *value, size_t size, double *spread)
 {
-    const size_t size = s->count < WINDOW ? s->count : WINDOW;
-    size_t from = i > REACH ? i - REACH : 0;
-    from = from + size > s->count ? s->count - size : from;
     double sorted[WINDOW] = {0};
-    for (size_t k = 0; k < size; k++)
-        sorted[k] = s->value[from + k];
+    memcpy(sorted, value, size * sizeof *value);
     insertion_sort(sorted, size);
     const double level = sorted[size / 2];
     for (size_t k = 0; k < size; k++)
@@ -66,6 +62,26 @@ static double level_around(const stretch *s, size_t i, double *spread)
     insertion_sort(sorted, size);
     *spread = 1.4826 * sorted[size / 2];
     return level;
+}
+
+/* Of the samples around one. At the ends of the record the window is the first or last one. */
+static double level_around(const stretch *s, size_t i, double *spread)
+{
+    const size_t size = s->count < WINDOW ? s->count : WINDOW;
+    size_t from = i > REACH ? i - REACH : 0;
+    from = from + size > s->count ? s->count - size : from;
+    return level_of(s->value + from, size, spread);
+}
+
+/* Scale of the noisier side of a sample. */
+static double spread_beside(const stretch *s, size_t i)
+{
+    double before = 0, behind = 0;
+    if (i >= REACH)
+        (void)level_of(s->value + i - REACH, REACH, &before);
+    if (i + REACH < s->count)
+        (void)level_of(s->value + i + 1, REACH, &behind);
+    return fmax(before, behind);
 }
 
 /* Highest less lowest of a block, in lanes that the compiler makes vectors of. */
@@ -152,6 +168,7 @@ static void note_outlier(imk_screener *s, size_t i, double distance)
     s->counting.last = place;
     s->found.largest_outlier = fmax(s->found.largest_outlier, distance);
     s->mark[i] |= IMKI_MARK_OUTLIER;
+    s->marked = true;
 }
 
 static void assess(imk_screener *s, const stretch *in, size_t i)
@@ -160,7 +177,7 @@ static void assess(imk_screener *s, const stretch *in, size_t i)
     const double distance = fabs(in->value[i] - level_around(in, i, &spread));
     if (!(distance > in->shoulder))
         return;
-    if (distance > in->threshold && distance > 9 * spread)
+    if (distance > in->threshold && distance > 9 * spread && distance > 6 * spread_beside(in, i))
         note_outlier(s, s->place[i - in->margin], distance);
     else if (distance <= in->threshold && distance > 5 * spread)
         s->shoulder++;

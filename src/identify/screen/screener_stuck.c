@@ -26,20 +26,44 @@ static void keep_share(imk_screener *s, size_t repeats, size_t compared)
         s->share[s->shares++ % IMKI_SCREEN_SHARES] = (double)repeats / (double)compared;
 }
 
-void imki_screen_repeats(imk_screener *s, size_t count, const double *samples)
+static size_t count_repeats(imk_screener *s, size_t from, size_t to, const double *samples,
+                            size_t *compared)
 {
+    size_t repeats = 0;
+    for (size_t i = from; i < to; i++) {
+        if (samples[i] != samples[i])
+            continue;
+        repeats += samples[i] == s->last;
+        ++*compared;
+        s->last = samples[i];
+    }
+    return repeats;
+}
+
+/* The same where nothing is missing. */
+static size_t count_repeats_fast(imk_screener *s, size_t from, size_t to, const double *samples,
+                                 size_t *compared)
+{
+    size_t repeats = samples[from] == s->last;
+    for (size_t i = from + 1; i < to; i++)
+        repeats += samples[i] == samples[i - 1];
+    *compared = to - from;
+    s->last = samples[to - 1];
+    return repeats;
+}
+
+void imki_screen_repeats(imk_screener *s, int at, bool whole)
+{
+    const double *samples = s->raw[at];
+    const size_t before = s->repeats, count = s->count[at];
     for (size_t from = 0; from < count; from += STRETCH) {
         const size_t to = from + STRETCH < count ? from + STRETCH : count;
-        size_t repeats = 0, compared = 0;
-        for (size_t i = from; i < to; i++) {
-            if (samples[i] != samples[i])
-                continue;
-            repeats += samples[i] == s->last;
-            compared++;
-            s->last = samples[i];
-        }
+        size_t compared = 0;
+        const size_t repeats = whole ? count_repeats_fast(s, from, to, samples, &compared)
+                                     : count_repeats(s, from, to, samples, &compared);
         keep_share(s, repeats, compared);
     }
+    s->chunk_repeats[at] = s->repeats - before;
 }
 
 size_t imki_screen_stuck_limit(const imk_screener *s)
@@ -93,6 +117,7 @@ static void mark_run(imk_screener *s, size_t from, size_t to, double value, size
         if (!spare) {
             stuck->first = stuck->count++ == 0 ? s->chunk * IMKI_SCREEN_CHUNK + i : stuck->first;
             s->mark[i] |= IMKI_MARK_STUCK;
+            s->marked = true;
         }
         spare = false;
     }
@@ -111,10 +136,32 @@ static size_t run_from(const imk_screener *s, size_t from, double value, size_t 
     return length;
 }
 
+/* The chunk ends in a run that is not stuck. */
+static void keep_last_run(imk_screener *s)
+{
+    size_t i = s->count[0];
+    while (i > 0 && s->raw[0][i - 1] != s->raw[0][i - 1])
+        i--;
+    if (i == 0)
+        return; /* nothing is there: the run goes on */
+    s->run_value = s->raw[0][i - 1];
+    s->run_stuck = false;
+    for (s->run_length = 0; i > 0; i--) {
+        const double sample = s->raw[0][i - 1];
+        if (sample == sample && sample != s->run_value)
+            break;
+        s->run_length += sample == sample;
+    }
+}
+
 void imki_screen_stuck(imk_screener *s)
 {
     const size_t limit = imki_screen_stuck_limit(s);
     s->found.stuck_limit = limit;
+    if (s->run_length + s->chunk_repeats[0] + s->chunk_repeats[1] < RUN_MIN && !s->run_stuck) {
+        keep_last_run(s);
+        return;
+    }
     for (size_t i = 0, to; i < s->count[0]; i = to) {
         const double value = s->raw[0][i];
         if (value != value) {
