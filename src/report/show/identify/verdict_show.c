@@ -425,6 +425,7 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
     for (size_t k = 0; k < sizeof concerns / sizeof concerns[0]; k++)
         if (log->screened || concerns[k].bit || concerns[k].find == find_missing)
             assess_concern(&v, log, &concerns[k]);
+    imki_verdict_noise_changes(&v, log);
     assess_five_terms(&v, log);
     assess_length(&v, log);
     if (log->record.bridged > 0)
