@@ -85,6 +85,7 @@ typedef struct search {
     imki_noise_contrast contrast[BOUNDARIES]; /* the least probable one after each boundary */
     size_t octave[BOUNDARIES];
     unsigned also[BOUNDARIES]; /* octaves that change significantly somewhere in the part */
+    bool transition[IMK_NOISE_MAP_BLOCKS]; /* columns within which the noise changes */
     double probability;
 } search;
 
@@ -191,18 +192,48 @@ static bool is_needed(const search *s, size_t k)
     return false;
 }
 
-/* A later split may make one before it superfluous. */
+static void remove_boundary(search *s, size_t k)
+{
+    s->boundary_count--;
+    for (size_t i = k; i < s->boundary_count; i++)
+        s->boundary[i] = s->boundary[i + 1];
+}
+
+/* Mean square of part k in the shortest octave that changed. */
+static double level_of(const search *s, size_t k)
+{
+    size_t octave = 0;
+    while (!(s->changed >> octave & 1))
+        octave++;
+    const imk_noise_cell part =
+        imki_noise_cells(s->map, octave, s->boundary[k], s->boundary[k + 1]);
+    return part.count > 0 ? part.square / part.count : 0;
+}
+
+/* Is part k the one column in which the noise changes from that before to that behind it? */
+static bool is_transition(const search *s, size_t k)
+{
+    if (k == 0 || k + 2 >= s->boundary_count || s->boundary[k + 1] != s->boundary[k] + 1)
+        return false;
+    const double before = level_of(s, k - 1), here = level_of(s, k), after = level_of(s, k + 1);
+    return (here - before) * (after - here) > 0;
+}
+
+/* A later split may make one before it superfluous; a change within a column makes two. */
 static void prune(search *s)
 {
-    for (size_t k = 1; k + 1 < s->boundary_count && s->boundary_count > 3;) {
-        if (is_needed(s, k)) {
+    for (size_t k = 1; k + 1 < s->boundary_count && s->boundary_count > 3;)
+        if (is_needed(s, k))
             k++;
-            continue;
+        else
+            remove_boundary(s, k);
+    for (size_t k = 1; k + 2 < s->boundary_count; k++)
+        if (is_transition(s, k)) {
+            const double before = level_of(s, k - 1), here = level_of(s, k);
+            const double after = level_of(s, k + 1);
+            s->transition[s->boundary[k]] = true;
+            remove_boundary(s, fabs(here - before) < fabs(after - here) ? k : k + 1);
         }
-        s->boundary_count--;
-        for (size_t i = k; i < s->boundary_count; i++)
-            s->boundary[i] = s->boundary[i + 1];
-    }
 }
 
 /* Logarithm of the ratio of deviations of a segment and of the record, and its variance. */
@@ -294,8 +325,12 @@ imk_status imk_noise_changes_find(const imk_noise_changes_settings *settings,
              : is_of_term(&s, &r, &shares, shares.flicker) ? IMK_NOISE_BIAS_INSTABILITY
                                                            : IMK_NOISE_TERMS;
     shares.skipped = r.term == IMK_NOISE_TERMS ? r.changed : 0;
-    for (size_t k = 0; k < r.segment_count; k++)
-        imki_noise_strengths(map, &shares, identified, settings->confidence, &r.segment[k]);
+    for (size_t k = 0; k < r.segment_count; k++) {
+        const size_t low = s.boundary[k], high = s.boundary[k + 1];
+        imki_noise_strengths(map, &shares, identified, settings->confidence,
+                             low + (s.transition[low] && low + 1 < high),
+                             high - (high > low + 1 && s.transition[high - 1]), &r.segment[k]);
+    }
     r.matters = r.changed != 0 && matters(&r, identified);
     imki_noise_tails(map, settings, identified, &shares, &r);
     *result = r;

@@ -80,13 +80,15 @@ static void push(imk_noise_map *map, size_t octave, double mean, double share)
 static void take_row(size_t count, double *mean, imk_noise_cell *cell)
 {
     double absolute[LANES] = {0}, square[LANES] = {0}, fourth[LANES] = {0};
-    for (size_t k = 0; k < count / 2; k++) {
-        const double d = mean[2 * k + 1] - mean[2 * k], dd = d * d;
-        absolute[k % LANES] += fabs(d);
-        square[k % LANES] += dd;
-        fourth[k % LANES] += dd * dd;
-        mean[k] = 0.5 * (mean[2 * k] + mean[2 * k + 1]);
-    }
+    for (size_t k = 0; k < count / 2; k += LANES)
+        for (size_t l = 0; l < LANES && k + l < count / 2; l++) {
+            const double first = mean[2 * (k + l)], second = mean[2 * (k + l) + 1];
+            const double d = second - first, dd = d * d;
+            absolute[l] += fabs(d);
+            square[l] += dd;
+            fourth[l] += dd * dd;
+            mean[k + l] = 0.5 * (first + second);
+        }
     cell->count += (double)(count / 2);
     cell->absolute += (absolute[0] + absolute[1]) + (absolute[2] + absolute[3]);
     cell->square += (square[0] + square[1]) + (square[2] + square[3]);

@@ -51,8 +51,8 @@ double imki_noise_expected_scatter(const imk_identification *identified, double 
                                    const imki_noise_shares *shares, size_t octave);
 /* N and B of columns first … end - 1. */
 void imki_noise_strengths(const imk_noise_map *map, const imki_noise_shares *shares,
-                          const imk_identification *identified, double confidence,
-                          imk_noise_segment *segment);
+                          const imk_identification *identified, double confidence, size_t first,
+                          size_t end, imk_noise_segment *segment);
 
 /* noise_tails.c: kurtosis and scatter. */
 void imki_noise_tails(const imk_noise_map *map, const imk_noise_changes_settings *settings,

@@ -122,13 +122,11 @@ static imk_estimate strength(double value, double square, double of_record, doub
 }
 
 void imki_noise_strengths(const imk_noise_map *map, const imki_noise_shares *shares,
-                          const imk_identification *identified, double confidence,
-                          imk_noise_segment *segment)
+                          const imk_identification *identified, double confidence, size_t first,
+                          size_t end, imk_noise_segment *segment)
 {
     const imk_estimate *n = &identified->term[IMK_NOISE_WHITE];
     const imk_estimate *b = &identified->term[IMK_NOISE_BIAS_INSTABILITY];
-    const size_t first = segment->first / map->block;
-    const size_t end = (segment->end + map->block - 1) / map->block;
     const factors all = fit(map, shares, b->present, 0, IMK_NOISE_MAP_BLOCKS);
     const factors here = fit(map, shares, b->present, first, end);
     segment->white = segment->bias_instability = (imk_estimate){.present = false};

@@ -238,7 +238,7 @@ void imki_noise_changes_data(const imk_identify_log *log, size_t channel, imk_un
 
 static size_t wide_enough(const imk_noise_map *map, size_t octave)
 {
-    enum { LEAST = 8 }; /* differences to a point */
+    enum { LEAST = 32 }; /* differences to a point */
     const size_t need = (LEAST << (octave + 1)) / map->block;
     const size_t width = width_of(map);
     return need > width ? need : width;
@@ -265,7 +265,7 @@ static void show_channel(const imk_identify_log *log, size_t channel, imk_figure
 {
     const imk_noise_map *map = log->map[channel];
     size_t octaves = imk_noise_map_octaves(map);
-    while (octaves > 1 && 4 * wide_enough(map, octaves - 1) > imk_noise_map_blocks(map))
+    while (octaves > 1 && 3 * wide_enough(map, octaves - 1) > imk_noise_map_blocks(map))
         octaves--;
     const size_t every = (octaves + CURVES_MAX - 1) / CURVES_MAX;
     imk_figure_panel(figure,
@@ -286,6 +286,7 @@ void imki_noise_changes_figure(const imk_identify_shown *shown, imk_result *resu
         all = all && log->map[c];
     if (!all)
         return;
+    imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, "Noise over time");
     imk_figure_builder *figure = imk_result_figure(
         result, shown->name, columns,
