@@ -35,7 +35,7 @@ PUBLIC = {
     "motion": "earth motion motion_script",
     "simulate": "simulate",
     "identify": "allan allan_fit allan_gaps allan_stream identify identify_joint identify_plan "
-                "identify_record record_screen spectrum",
+                "identify_record noise_map record_screen spectrum",
     "compensate": "compensate firmware",
     "calibrate": "calibration calibration_plan evaluate ferraris procedure reference_alignment "
                  "repeatability static_detection test_record thermal",

@@ -15,6 +15,7 @@
 #include "imukit/identify.h"
 #include "imukit/identify_joint.h"
 #include "imukit/model.h"
+#include "imukit/noise_map.h"
 #include "imukit/record_screen.h"
 
 IMK_BEGIN_C
@@ -54,6 +55,9 @@ typedef struct imk_identify_log {
     imk_screen screen[IMK_LOG_COLUMNS_MAX];
     imk_spectral_summary *summary[IMK_LOG_COLUMNS_MAX]; /**< only with settings.summarise */
     imk_allan_curve curve[IMK_LOG_COLUMNS_MAX];         /**< Allan deviations at octaves */
+    imk_noise_map *map[IMK_LOG_COLUMNS_MAX]; /**< noise over time; NULL: of several records, or of a
+                                                curve */
+    imk_noise_changes changes[IMK_LOG_COLUMNS_MAX]; /**< what these maps say */
     imk_findings findings;
 } imk_identify_log;
 

@@ -15,6 +15,7 @@
 #define IMUKIT_IDENTIFY_RECORD_H
 
 #include "imukit/identify.h"
+#include "imukit/noise_map.h"
 
 IMK_BEGIN_C
 
@@ -84,6 +85,10 @@ IMK_API imk_status imk_identify_record_finish(imk_identify_record *record,
  *  @param count  set to the number of points */
 IMK_API const imk_allan_point *imk_identify_record_curve(const imk_identify_record *record,
                                                          size_t *count);
+
+/** Noise over time of the samples, in their unit; valid after imk_identify_record_finish(), until
+ *  the record's memory is used otherwise. */
+IMK_API const imk_noise_map *imk_identify_record_map(const imk_identify_record *record);
 
 IMK_END_C
 #endif

@@ -46,6 +46,7 @@
 #include "imukit/names.h"
 #include "imukit/navigate.h"
 #include "imukit/noise.h"
+#include "imukit/noise_map.h"
 #include "imukit/procedure.h"
 #include "imukit/random.h"
 #include "imukit/record_screen.h"

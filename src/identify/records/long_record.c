@@ -43,6 +43,7 @@ static void lay_out(imk_identify_record *r, const imki_record_sizes *sizes, imki
     r->transform = imki_take(parts, r->transform_size);
     r->means = imki_take(parts, sizes->capacity * sizeof(double));
     r->sums = imki_take(parts, sums_size(sizes) * sizeof(double));
+    r->map = imki_take(parts, sizeof *r->map);
 }
 
 size_t imki_record_memory(const imki_record_sizes *sizes)
@@ -67,6 +68,7 @@ imk_identify_record *imki_record_start(const imki_record_sizes *sizes, void *mem
     r->scale = 1;
     r->checks.last = (double)NAN;
     imki_record_allan_begin(r);
+    imk_noise_map_begin(r->map);
     return r;
 }
 
@@ -269,6 +271,7 @@ static void handle(imk_identify_record *r, size_t count)
     if (missing < count)
         imki_record_check(&r->checks, count, samples, low, high);
     add_means(r, count, samples, missing == 0);
+    imk_noise_map_add(r->map, count, samples);
     if (missing > 0)
         imki_record_bridge(count, samples, 0, r->samples);
     if (missing <= count / MISSING_SHARE)
@@ -326,4 +329,9 @@ const imk_allan_point *imk_identify_record_curve(const imk_identify_record *r, s
 {
     *count = r->octave_count;
     return r->octave;
+}
+
+const imk_noise_map *imk_identify_record_map(const imk_identify_record *r)
+{
+    return r->map;
 }

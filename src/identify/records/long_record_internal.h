@@ -61,6 +61,7 @@ struct imk_identify_record {
     size_t short_count, short_factor[IMKI_SHORT_FACTORS], short_windows[IMKI_SHORT_FACTORS];
     double short_total[IMKI_SHORT_FACTORS]; /* variance times windows */
     imki_record_checks checks;
+    imk_noise_map *map;
     size_t octave_count;
     imk_allan_point octave[IMKI_OCTAVES];
 };

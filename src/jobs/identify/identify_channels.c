@@ -79,6 +79,8 @@ static imk_status identify(channel_work *work, size_t channel, imk_error *error)
         status = imk_identify_channel(&settings, n, imk_even_record_data(&log->record, channel),
                                       &log->result[channel], workspace, size, error);
     imki_resize(allocator, workspace, 0);
+    if (status == IMK_OK)
+        status = imki_identify_changes(log, channel, NULL, allocator, error);
     if (status != IMK_OK)
         return status;
     status = take_curve(work, channel);

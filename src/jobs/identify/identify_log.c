@@ -29,6 +29,7 @@ void imk_identify_log_free(imk_identify_log *result)
     for (size_t c = 0; c < IMK_LOG_COLUMNS_MAX; c++) {
         imk_allan_curve_free(&result->curve[c], &allocator);
         imki_resize(&allocator, result->summary[c], 0);
+        imki_resize(&allocator, result->map[c], 0);
     }
     imk_even_record_free(&result->record);
     imki_resize(&allocator, result, 0);

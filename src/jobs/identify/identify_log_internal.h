@@ -18,6 +18,11 @@ imk_screen_settings imki_screen_settings(const imk_identify_log *log);
 imk_status imki_identify_explain(imk_identify_log *log, size_t channel, imk_status status,
                                  const imk_error *why, imk_error *error);
 
+/* Noise over time of a channel that is identified, and what follows for its interval of N.
+ * @param map  of the channel; NULL: made of its samples */
+imk_status imki_identify_changes(imk_identify_log *log, size_t channel, const imk_noise_map *map,
+                                 const imk_allocator *allocator, imk_error *error);
+
 /* All channels of a loaded record, each screened and identified as an item of the executor. */
 imk_status imki_identify_channels(imk_identify_log *log, const imk_job *job, imk_error *error);
 

@@ -273,6 +273,9 @@ static void finish_channel(void *context, size_t channel)
         status = imk_identify_record_finish(record, &settings, &s->log->result[channel], workspace,
                                             size, error);
     imki_resize(allocator, workspace, 0);
+    if (status == IMK_OK)
+        status = imki_identify_changes(s->log, channel, imk_identify_record_map(record), allocator,
+                                       error);
     if (status == IMK_OK) {
         size_t count;
         const imk_allan_point *points = imk_identify_record_curve(record, &count);
@@ -397,6 +400,7 @@ static imk_status forget(long_record *s, bool touched, imk_error *error)
     for (size_t c = 0; c < IMK_LOG_COLUMNS_MAX; c++) {
         imk_allan_curve_free(&log->curve[c], allocator);
         log->summary[c] = imki_resize(allocator, log->summary[c], 0);
+        log->map[c] = imki_resize(allocator, log->map[c], 0);
     }
     log->record = (imk_even_record){.count = 0};
     log->findings.count = 0;

@@ -140,6 +140,7 @@ void imki_channel_data(const imk_identify_log *log, size_t channel, imk_result *
     imk_result_count(result, "missing", (long long)r->missing);
     imk_result_quantity(result, "largest_gap", r->largest_gap, "s");
     screening_data(log, channel, unit, result);
+    imki_noise_changes_data(log, channel, unit, result);
 }
 
 void imki_channels_data(const imk_identify_log *log, imk_result *result)
@@ -211,5 +212,6 @@ void imk_show_identify_log(const imk_identify_shown *shown, imk_result *result)
         "probability to standard deviations of a normal distribution; neighbouring points share "
         "most of their data.",
         result);
+    imki_noise_changes_figure(shown, result);
     imk_result_for(result, IMK_FOR_BOTH);
 }

@@ -38,6 +38,12 @@ void imki_channels_data(const imk_identify_log *log, imk_result *result);
 
 /* A table for each kind of sensor: values with their intervals below them. */
 void imki_identify_tables(const imk_identify_log *log, imk_result *result);
+/* noise_changes_show.c: the verdict on changes of the noise; "noise_over_time", in the unit of the
+ * channel; a figure with its heading. */
+void imki_verdict_noise_changes(imk_verdict *verdict, const imk_identify_log *log);
+void imki_noise_changes_data(const imk_identify_log *log, size_t channel, imk_unit unit,
+                             imk_result *result);
+void imki_noise_changes_figure(const imk_identify_shown *shown, imk_result *result);
 /* Truth beside the estimates, and how many intervals cover it. */
 void imki_truth_table(const imk_identify_shown *shown, imk_result *result);
 

@@ -486,6 +486,7 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
         if (log->screened || concerns[k].bit || concerns[k].find == find_missing)
             assess_concern(&v, log, &concerns[k]);
     imki_assess_vibration(&v, log);
+    imki_verdict_noise_changes(&v, log);
     assess_five_terms(&v, log);
     assess_length(&v, log);
     if (log->record.bridged > 0)

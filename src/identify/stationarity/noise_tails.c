@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Is the white noise Gaussian, and is its strength as steady as noise allows?
+ *
+ * The kurtosis is that of the Haar differences of one sample, within columns, so that noise that
+ * changes from column to column is not taken for heavy tails. A difference of 2 m independent
+ * values has 1/(2 m) of their excess kurtosis, and white noise that is a share w of the variance
+ * shows w^2 of it. Behind an output filter an octave is taken that is slower than the filter.
+ *
+ * Bursts make the strength vary from column to column by more than independent differences do. The
+ * squares of a resonance are correlated over Q/(2 pi f), which is allowed for. */
+#include "imukit/distributions.h"
+#include "noise_map_internal.h"
+
+#include <math.h>
+
+static const double many = 32;           /* differences in a column */
+static const double scatter_least = 1.5; /* that matters: 22 % of the interval */
+
+/* The first octave behind the output filter. */
+static size_t white_octave(const imk_identification *identified, double dt)
+{
+    size_t octave = 0;
+    while (identified->filter.bandwidth > 0 && octave + 1 < IMK_NOISE_MAP_OCTAVES &&
+           identified->filter.bandwidth * dt * (double)((size_t)1 << octave) < 1)
+        octave++;
+    return octave;
+}
+
+/* Excess kurtosis from fourth powers and squared mean squares of columns of about c differences, of
+ * which the latter are v^2 (1 + (2 + kurtosis)/c) on average. */
+static double kurtosis_within(const imk_noise_map *map, size_t octave, double *differences)
+{
+    double fourth = 0, squared = 0, count = 0, columns = 0;
+    for (size_t b = 0; b < imk_noise_map_blocks(map); b++) {
+        const imk_noise_cell *cell = &map->cell[octave][b];
+        if (!(cell->count >= many))
+            continue;
+        fourth += cell->fourth;
+        squared += cell->square * cell->square / cell->count;
+        count += cell->count;
+        columns++;
+    }
+    *differences = count;
+    if (!(squared > 0))
+        return 0;
+    const double ratio = fourth / squared, c = count / columns;
+    return (ratio * (1 + 2 / c) - 3) / fmax(1 - ratio / c, 0.1);
+}
+
+static void test_tails(const imk_noise_map *map, const imk_noise_changes_settings *settings,
+                       const imk_identification *identified, const imki_noise_shares *shares,
+                       imk_noise_changes *r)
+{
+    const size_t octave = white_octave(identified, settings->dt);
+    double differences;
+    if (octave >= shares->octaves || !(imki_noise_total(shares, octave) > 0))
+        return;
+    const double share = shares->white[octave] / imki_noise_total(shares, octave);
+    const double fast = imk_noise_map_deviation(map, 0, 0, IMK_NOISE_MAP_BLOCKS, 0.95).value;
+    const double excess = kurtosis_within(map, octave, &differences);
+    r->gaussian_tested = share > 0.7 && fast > 0.7 * identified->resolution &&
+                         shares->tones[octave] < 0.1 * imki_noise_total(shares, octave) &&
+                         differences > 0;
+    if (!r->gaussian_tested)
+        return;
+    const double factor = 2 * (double)((size_t)1 << octave) / (share * share);
+    r->kurtosis = factor * excess;
+    r->kurtosis_sigma = factor * sqrt(24 / differences);
+    /* The distribution of a kurtosis is skewed: a tenth of the significance of the normal one. */
+    r->heavy_tails =
+        r->kurtosis > -imk_normal_quantile(0.1 * settings->significance) * r->kurtosis_sigma;
+}
+
+static void test_scatter(const imk_noise_map *map, const imk_noise_changes_settings *settings,
+                         const imk_identification *identified, const imki_noise_shares *shares,
+                         imk_noise_changes *r)
+{
+    for (size_t j = white_octave(identified, settings->dt); j < shares->octaves; j++) {
+        double steps = 0, squares = 0;
+        if (!(r->tested >> j & 1) || shares->tones[j] > 0.02 * imki_noise_total(shares, j))
+            continue;
+        for (size_t k = 0; k < r->segment_count; k++)
+            squares += imki_noise_steps(map, j, r->segment[k].first / map->block,
+                                        (r->segment[k].end + map->block - 1) / map->block, &steps);
+        if (steps < 8)
+            continue;
+        const double scatter =
+            squares / steps / imki_noise_expected_scatter(identified, settings->dt, shares, j);
+        const double chance = imk_f_upper(scatter, 2.0 / 3 * steps, HUGE_VAL);
+        if (chance * (double)shares->octaves > settings->significance || scatter < scatter_least ||
+            scatter < r->scatter)
+            continue;
+        r->scatter = scatter;
+        r->scatter_octave = j;
+        r->bursts = true;
+    }
+}
+
+void imki_noise_tails(const imk_noise_map *map, const imk_noise_changes_settings *settings,
+                      const imk_identification *identified, const imki_noise_shares *shares,
+                      imk_noise_changes *result)
+{
+    test_tails(map, settings, identified, shares, result);
+    test_scatter(map, settings, identified, shares, result);
+}
+
+void imk_noise_changes_widen(const imk_noise_changes *changes, size_t n,
+                             imk_identification *identified)
+{
+    imk_estimate *e = &identified->term[IMK_NOISE_WHITE];
+    if (!e->present || !(e->sigma > 0) || n == 0)
+        return;
+    const double relative = e->sigma / e->value, gaussian = relative * relative;
+    double variance = gaussian;
+    if (changes->heavy_tails)
+        variance += changes->kurtosis / (4 * (double)n);
+    if (changes->bursts)
+        variance *= changes->scatter;
+    const double factor = sqrt(variance / gaussian);
+    e->sigma *= factor;
+    e->upper = e->free_value + factor * (e->upper - e->free_value);
+    e->lower = fmax(0, e->free_value - factor * (e->free_value - e->lower));
+}
