@@ -53,7 +53,8 @@ enum {
     IMK_VERDICT_WARM_UP = 1 << 5,   /**< the start drifts differently from the rest */
     IMK_VERDICT_SATURATED = 1 << 6, /**< samples stick at an extreme value */
     IMK_VERDICT_MISFIT =
-        1 << 7, /**< the model does not explain all tau: see valid_from, valid_to */
+        1 << 7, /**< the model does not explain all tau (false alarms: less than one record in
+                   10000): see valid_from, valid_to */
     IMK_VERDICT_FROZEN =
         1 << 8 /**< long runs of one value: samples are repeated, and the true rate is lower */
 };
@@ -72,8 +73,9 @@ typedef struct imk_identification {
     } gauss_markov[IMK_TERMS_MAX];
     imk_sinusoid sinusoid[IMK_TERMS_MAX];
     imk_resonance resonance[IMK_TERMS_MAX];
-    double valid_from, valid_to; /**< range of tau [s] over which the model explains the measured
-                                      Allan deviation; from is infinite when there is none */
+    double valid_from, valid_to; /**< longest range of tau [s] over which the measured Allan
+                                      deviation is within 5 % of the model's or may be so by chance;
+                                      from is infinite when there is none */
     double five_terms_from; /**< the same lower end for the five terms alone, without Gauss-Markov
                                terms, lines, resonances and filter */
     double longest;         /**< longest tau compared with the record: a ninth of its length [s] */

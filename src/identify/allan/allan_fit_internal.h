@@ -95,6 +95,11 @@ void imki_allan_problem_lay(imki_allan_problem *problem, size_t count, size_t te
 /* Second differences of all records at a factor. */
 double imki_allan_squares(const imk_allan_table *table, size_t i);
 
+/* Variance of the Allan variance at factor m of a record of n samples with a model's noise, its
+ * second differences `stride` samples apart, a divisor of m. Good to a few per cent. */
+double imki_allan_variance_of_one(const imk_allan_noise *noise, double dt, size_t n, size_t m,
+                                  size_t stride);
+
 /* allan_fit_solve.c */
 enum { IMKI_ALLAN_NONE = -1 };
 /* Solve for the active amounts, one of them held at a value unless `held` is IMKI_ALLAN_NONE. The

@@ -68,6 +68,34 @@ static imk_status noise_check(const imk_allan_noise *noise)
     return IMK_OK;
 }
 
+static size_t count_terms(const imk_allan_noise *noise, bool use[IMK_NOISE_TERMS])
+{
+    size_t terms = (size_t)noise->gauss_markov_count;
+    terms += (size_t)noise->sinusoid_count;
+    terms += (size_t)noise->resonance_count;
+    for (int i = 0; i < IMK_NOISE_TERMS; i++)
+        terms += use[i] = noise->term[i] != 0;
+    return terms;
+}
+
+double imki_allan_variance_of_one(const imk_allan_noise *noise, double dt, size_t n, size_t m,
+                                  size_t stride)
+{
+    enum { PAIRS = IMKI_ALLAN_TERMS * (IMKI_ALLAN_TERMS + 1) / 2 };
+    double memory[IMKI_ALLAN_TERMS + PAIRS], amount[IMKI_ALLAN_TERMS], variance;
+    bool use[IMK_NOISE_TERMS];
+    const imk_allan_table table = {
+        .dt = dt, .count = 1, .factors = &m, .strides = &stride, .record_count = 1, .lengths = &n};
+    imki_allan_problem problem = {.table = &table, .noise = *noise};
+    imki_allan_problem_lay(&problem, 1, count_terms(noise, use), memory);
+    imki_allan_problem_terms(&problem, use);
+    imki_allan_sums(&problem, 0, true);
+    for (size_t t = 0; t < problem.terms; t++)
+        amount[t] = imki_allan_amount(&problem, noise, t);
+    imki_allan_matrix(&problem, amount, &variance);
+    return variance;
+}
+
 imk_status imk_allan_covariance(const imk_allan_table *table, const imk_allan_noise *noise,
                                 double *covariance, void *workspace, size_t workspace_size)
 {
@@ -77,11 +105,7 @@ imk_status imk_allan_covariance(const imk_allan_table *table, const imk_allan_no
     if (status != IMK_OK)
         return status;
     bool use[IMK_NOISE_TERMS];
-    size_t terms = (size_t)noise->gauss_markov_count;
-    terms += (size_t)noise->sinusoid_count;
-    terms += (size_t)noise->resonance_count;
-    for (int i = 0; i < IMK_NOISE_TERMS; i++)
-        terms += use[i] = noise->term[i] != 0;
+    const size_t terms = count_terms(noise, use);
     if (workspace_size < imk_allan_covariance_workspace_size(table->count, terms))
         return IMK_ERROR_WORKSPACE;
     imki_allan_problem problem = {.table = table, .noise = *noise};

@@ -189,10 +189,12 @@ typedef struct imki_work {
     imki_line lines[IMKI_LINES_MAX]; /* left out of the fit */
     struct imki_missing *missing;    /* missing_internal.h; NULL: none are */
     bool bands_given;                /* several records: the bands are there already */
-    /* A long record instead comes as the spectra of two scales and its Allan deviations at 99.9 %
-     * confidence, ascending; 0 of them: as samples. */
+    /* A long record instead comes as the spectra of two scales and its Allan deviations,
+     * ascending; 0 of them: as samples. From factor block_from on, windows start every `block`
+     * samples; 0: at every one. */
     size_t spectrum_count, point_count;
     const imki_spectrum *spectra;
+    size_t block, block_from;
     imk_allan_point *points; /* room for IMKI_POINTS_MAX */
 } imki_work;
 
@@ -229,6 +231,15 @@ void imki_identify_bands(imki_work *w, const imk_identification *result);
 void imki_identify_terms(imki_work *w, imk_identification *result);
 void imki_identify_intervals(imki_work *w, imk_identification *result);
 void imki_identify_assess(imki_work *w, imk_identification *result);
+
+/* identify_agreement.c: the longest range of tau [s] over which measured deviations agree with the
+ * model of the result; infinite `from` when there is none. */
+void imki_agreement(const imki_work *w, const imk_identification *result, size_t count,
+                    const imk_allan_point *points, double *from, double *to);
+
+/* Is the ratio of a measured Allan variance to the expected one inside its range, but for a
+ * probability of at most `tail` on each side? edf: degrees of freedom under the model, > 0. */
+bool imki_allan_is_likely(double ratio, double edf, double tail);
 
 /* identify_lines.c: enter a line that is no subtracted tone as a resonance or, where it is not
  * shaped like one, as a sinusoid at `frequency`; true when it is to be left out of the fit.

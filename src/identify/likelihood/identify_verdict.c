@@ -34,28 +34,7 @@ double imk_identification_allan_variance(const imk_identification *result, doubl
     return sum;
 }
 
-/* The longest range of tau over which the measured deviation agrees with a model: within 5 %, or
- * with the model inside its 99.9 % interval. Infinite `from` when there is none. */
-static void agreement(const imk_identification *result, double dt, size_t count,
-                      const imk_allan_point *points, double *from, double *to)
-{
-    size_t first = 0, length = 0, run = 0;
-    for (size_t i = 0; i < count; i++) {
-        const double expected =
-            sqrt(imk_identification_allan_variance(result, dt, points[i].m, -1));
-        const bool close = fabs(points[i].deviation / expected - 1) < 0.05 ||
-                           (expected >= points[i].lower && expected <= points[i].upper);
-        run = close ? run + 1 : 0;
-        if (run > length) {
-            length = run;
-            first = i + 1 - run;
-        }
-    }
-    *from = length > 0 ? (double)points[first].m * dt : HUGE_VAL;
-    *to = length > 0 ? (double)points[first + length - 1].m * dt : 0;
-}
-
-/* Allan deviations of the samples at 99.9 % confidence; 0 when there is no room for them. */
+/* Allan deviations of the samples; 0 when there is no room for them. */
 static size_t measure(imki_work *w)
 {
     size_t factors[IMKI_POINTS_MAX], count = imk_allan_factors(IMK_ALLAN_DECADE, w->n, NULL);
@@ -64,8 +43,7 @@ static size_t measure(imki_work *w)
     imk_allan_factors(IMK_ALLAN_DECADE, w->n, factors);
     while (count > 1 && factors[count - 1] > w->n / 9)
         count--;
-    imk_allan_settings settings = imk_allan_default();
-    settings.confidence = 0.999;
+    const imk_allan_settings settings = imk_allan_default();
     imk_allan_sums(w->n, w->samples, w->cumulative, NULL);
     imk_allan_points(&settings, w->n, w->cumulative, count, factors, w->points, NULL);
     return count;
@@ -73,7 +51,6 @@ static size_t measure(imki_work *w)
 
 static void compare_with_allan(imki_work *w, imk_identification *result)
 {
-    const double dt = w->settings->dt;
     const size_t count = w->point_count > 0 ? w->point_count : measure(w);
     const imk_allan_point *points = w->points;
     if (count == 0)
@@ -82,14 +59,14 @@ static void compare_with_allan(imki_work *w, imk_identification *result)
     for (size_t i = 0; i < count; i++)
         least = fmin(least, points[i].deviation);
     result->minimum_floor = least / sqrt(imk_flicker_allan_variance(1, 1));
-    result->longest = (double)points[count - 1].m * dt;
-    agreement(result, dt, count, points, &result->valid_from, &result->valid_to);
+    result->longest = (double)points[count - 1].m * w->settings->dt;
+    imki_agreement(w, result, count, points, &result->valid_from, &result->valid_to);
 
     imk_identification five = *result;
     five.gauss_markov_count = five.sinusoid_count = five.resonance_count = 0;
     five.filter = (imk_low_pass){0, 0};
     double five_terms_to;
-    agreement(&five, dt, count, points, &result->five_terms_from, &five_terms_to);
+    imki_agreement(w, &five, count, points, &result->five_terms_from, &five_terms_to);
 }
 
 void imki_identify_assess(imki_work *w, imk_identification *result)

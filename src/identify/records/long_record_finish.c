@@ -127,8 +127,8 @@ static size_t transform_means(imk_identify_record *r, const imk_identify_setting
                               size_t transform_size, imk_allan_point *measured)
 {
     imk_allan_sums(r->mean_count, r->means, sums, NULL);
-    const size_t count = imki_record_allan_points(r, sums, IMK_ALLAN_DECADE, 0.999, r->samples / 9,
-                                                  IMKI_POINTS_MAX, measured);
+    const size_t count = imki_record_allan_points(r, sums, IMK_ALLAN_DECADE, settings->confidence,
+                                                  r->samples / 9, IMKI_POINTS_MAX, measured);
     r->octave_count = imki_record_allan_points(r, sums, IMK_ALLAN_OCTAVE, settings->confidence,
                                                r->samples / 2, IMKI_OCTAVES, r->octave);
     memcpy(coefficients, r->means, points * sizeof(double));
@@ -170,6 +170,8 @@ imk_status imk_identify_record_finish(imk_identify_record *r, const imk_identify
     work.points = imki_take(&room, IMKI_POINTS_MAX * sizeof(imk_allan_point));
     work.point_count = transform_means(r, settings, p.points, coefficients, cumulative, transform,
                                        p.transform_size, work.points);
+    work.block = r->block;
+    work.block_from = IMKI_STRIDE_ONE;
     work.spectrum_count = 2;
     work.spectra = spectra->part;
     imki_work_take_fits(&work, &room);
