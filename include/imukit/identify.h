@@ -44,8 +44,8 @@ typedef struct imk_estimate {
 enum {
     IMK_VERDICT_SHORT =
         1 << 0, /**< the record is too short for the slowest terms: only bounds are given */
-    IMK_VERDICT_COARSE =
-        1 << 1, /**< the resolution step is larger than the noise: do not trust the white noise */
+    IMK_VERDICT_COARSE = 1 << 1, /**< the resolution step is so large that rounding errors are not
+                                    white: do not trust white noise and quantization */
     IMK_VERDICT_LINES =
         1 << 2, /**< spectral lines (vibration, interference), modelled separately */
     IMK_VERDICT_RESONANCE = 1 << 3, /**< structural resonance, modelled separately */
@@ -55,8 +55,13 @@ enum {
     IMK_VERDICT_MISFIT =
         1 << 7, /**< the model does not explain all tau: see valid_from, valid_to */
     IMK_VERDICT_FROZEN =
-        1 << 8 /**< long runs of one value: samples are repeated, and the true rate is lower */
+        1 << 8, /**< long runs of one value: samples are repeated, and the true rate is lower */
+    IMK_VERDICT_UNDETERMINED = 1 << 12 /**< white noise or quantization is present, but known to no
+                                          better than a factor of three up and down */
 };
+
+/** Bits of imk_identification.ambiguous and .instead: 1 << a term of imk_noise_term, and this. */
+enum { IMK_AMBIGUOUS_GAUSS_MARKOV = 1 << IMK_NOISE_TERMS };
 
 /** Result for one channel. Values are in the channel's unit. */
 typedef struct imk_identification {
@@ -79,10 +84,15 @@ typedef struct imk_identification {
     double longest;         /**< longest tau compared with the record: a ninth of its length [s] */
     double resolution;      /**< smallest step between values [unit]; 0 when none is detected */
     double log_likelihood;
+    double rounding;    /**< white noise of rounding to these steps after the filter [unit of N]; 0
+                           when none is detected: then the white noise holds it */
     size_t missing;     /**< missing samples between the first and the last sample present */
     double largest_gap; /**< longest run of missing samples [s] */
     int rounds; /**< iterations between missing samples and spectrum; 0: no sample is missing */
-    unsigned verdict; /**< IMK_VERDICT_… bits */
+    unsigned verdict;   /**< IMK_VERDICT_… bits */
+    unsigned ambiguous; /**< terms called present without which other terms explain the record about
+                           as well; their intervals begin at 0. Intervals hold either way */
+    unsigned instead;   /**< terms, not called present, that may be there in their place */
 } imk_identification;
 
 /** Summary of a record for a joint estimate (identify_joint.h). */

@@ -204,6 +204,44 @@ static bool find_resonance(const imk_identify_log *log, size_t channel, imki_tex
     return true;
 }
 
+/* Terms of a mask, as "bias instability, ramp". */
+static void add_terms(imki_text *text, unsigned terms)
+{
+    static const char *const names[] = {"quantization", "white noise", "bias instability",
+                                        "random walk",  "ramp",        "Gauss-Markov noise"};
+    const char *between = "";
+    for (unsigned k = 0; k < sizeof names / sizeof names[0]; k++)
+        if (terms >> k & 1) {
+            imki_text_add(text, "%s%s", between, names[k]);
+            between = ", ";
+        }
+}
+
+static bool find_ambiguous(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    if (!r->ambiguous || log->settings.summarise)
+        return false;
+    add_terms(detail, r->ambiguous);
+    imki_text_put(detail, r->instead ? " or " : " or none");
+    add_terms(detail, r->instead);
+    return true;
+}
+
+static bool find_undetermined(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    static const char *const names[] = {"quantization", "white noise"};
+    const imk_log_column *column = imk_even_record_column(&log->record, channel);
+    for (int term = IMK_NOISE_QUANTIZATION; term <= IMK_NOISE_WHITE; term++) {
+        const imk_estimate *e = &log->result[channel].term[term];
+        const imk_unit unit = imk_channel_term(column, (imk_noise_term)term).unit;
+        if (e->present && !(e->upper <= 9 * e->lower))
+            imki_text_add(detail, "%s%s %.2g to %.2g %s", detail->size > 0 ? ", " : "", names[term],
+                          e->lower / unit.scale, e->upper / unit.scale, unit.text);
+    }
+    return true;
+}
+
 static bool find_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_low_pass filter = log->result[channel].filter;
@@ -247,8 +285,12 @@ static const struct concern {
      "longer",
      NULL},
     {IMK_VERDICT_COARSE, find_resolution, 0, IMK_FINDING_WARNING, "coarse",
-     "the output step is larger than the noise, so the white noise is unreliable; log with more "
-     "digits or a smaller range",
+     "the output step is so large against the noise that rounding errors are not white, so white "
+     "noise and quantization are unreliable; log with more digits or a smaller range",
+     NULL},
+    {IMK_VERDICT_UNDETERMINED, find_undetermined, 0, IMK_FINDING_WARNING, "undetermined",
+     "filter, resonances or other terms can take the place of this term, so its value is hardly "
+     "known; use the interval, or log faster or for longer",
      NULL},
     {IMK_VERDICT_SATURATED, NULL, 0, IMK_FINDING_WARNING, "saturated",
      "samples stick at an extreme value: the range is too small or the sensor was moved", NULL},
@@ -268,6 +310,8 @@ static const struct concern {
      "spectral lines, from vibration or interference, are modelled separately as sinusoids", NULL},
     {IMK_VERDICT_RESONANCE, find_resonance, 0, IMK_FINDING_NOTE, "resonance",
      "a resonance of the structure or the sensor is modelled separately", NULL},
+    {0, find_ambiguous, 0, IMK_FINDING_NOTE, "ambiguous",
+     "the record cannot tell which of these terms it holds; the intervals hold for either", NULL},
     {IMK_VERDICT_FILTERED, find_filter, 0, IMK_FINDING_NOTE, "filtered",
      "the output is low-pass filtered within the band; the filter is in the model", NULL},
 };
@@ -423,7 +467,8 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
                          "the log is too long to be held in memory, so it was not searched for "
                          "outliers, steps, a warm-up or an effect of temperature.");
     for (size_t k = 0; k < sizeof concerns / sizeof concerns[0]; k++)
-        if (log->screened || concerns[k].bit || concerns[k].find == find_missing)
+        if (log->screened || concerns[k].bit || concerns[k].find == find_missing ||
+            concerns[k].find == find_ambiguous)
             assess_concern(&v, log, &concerns[k]);
     assess_five_terms(&v, log);
     assess_length(&v, log);
