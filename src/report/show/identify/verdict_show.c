@@ -228,6 +228,18 @@ static bool find_ambiguous(const imk_identify_log *log, size_t channel, imki_tex
     return true;
 }
 
+/* Rounding an angle makes white noise of it only where the noise of one sample moves it by about
+ * half a step. */
+static bool find_angle_noise(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    const double step = sqrt(12) * r->term[IMK_NOISE_QUANTIZATION].value;
+    const double moved = r->term[IMK_NOISE_WHITE].value * sqrt(log->record.dt);
+    const bool rounded = fabs(r->resolution * log->record.dt - step) < 0.2 * step;
+    (void)detail;
+    return step > 2.1 * moved && !rounded;
+}
+
 static bool find_undetermined(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     static const char *const names[] = {"quantization", "white noise"};
@@ -310,11 +322,21 @@ static const struct concern {
      "spectral lines, from vibration or interference, are modelled separately as sinusoids", NULL},
     {IMK_VERDICT_RESONANCE, find_resonance, 0, IMK_FINDING_NOTE, "resonance",
      "a resonance of the structure or the sensor is modelled separately", NULL},
+    {0, find_angle_noise, 0, IMK_FINDING_NOTE, "angle_noise",
+     "the quantization is white noise of the angle, and the output is not rounded to such steps; "
+     "simulate rounds, so a twin has less noise at the shortest averaging times",
+     NULL},
     {0, find_ambiguous, 0, IMK_FINDING_NOTE, "ambiguous",
      "the record cannot tell which of these terms it holds; the intervals hold for either", NULL},
     {IMK_VERDICT_FILTERED, find_filter, 0, IMK_FINDING_NOTE, "filtered",
      "the output is low-pass filtered within the band; the filter is in the model", NULL},
 };
+
+/* What the estimate shows without screening the samples. */
+static bool is_of_estimate(assessment find)
+{
+    return find == find_missing || find == find_ambiguous || find == find_angle_noise;
+}
 
 /* The channels on which a condition holds, each with its details in parentheses. */
 static void assess_concern(imk_verdict *v, const imk_identify_log *log, const struct concern *about)
@@ -467,8 +489,7 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
                          "the log is too long to be held in memory, so it was not searched for "
                          "outliers, steps, a warm-up or an effect of temperature.");
     for (size_t k = 0; k < sizeof concerns / sizeof concerns[0]; k++)
-        if (log->screened || concerns[k].bit || concerns[k].find == find_missing ||
-            concerns[k].find == find_ambiguous)
+        if (log->screened || concerns[k].bit || is_of_estimate(concerns[k].find))
             assess_concern(&v, log, &concerns[k]);
     assess_five_terms(&v, log);
     assess_length(&v, log);
