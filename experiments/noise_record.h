@@ -7,9 +7,10 @@
 #include "imukit/imukit.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { TIMES = 2, PARAMETERS = IMK_NOISE_TERMS + 2 * TIMES };
+enum { TIMES = 2, RESONANCES = 3, PARAMETERS = IMK_NOISE_TERMS + 2 * TIMES };
 
 typedef struct truth {
     const char *name;
@@ -17,10 +18,13 @@ typedef struct truth {
     double term[IMK_NOISE_TERMS]; /* Q N B K R */
     imk_gauss_markov gauss_markov[TIMES];
     imk_sinusoid line;
-    imk_resonance resonance;
+    imk_resonance resonance[RESONANCES];
     imk_low_pass filter;
     size_t samples;
-    double step; /* values are rounded to it */
+    double step;       /* values are rounded to it */
+    double angle_step; /* their sum times dt is rounded to it */
+    double mean;       /* of the record */
+    bool fractional;   /* flicker noise by fractional differences, not by the library */
 } truth;
 
 /* Rounding errors as they are in theory, independent from sample to sample. (Rounding the record
@@ -35,6 +39,47 @@ static void add_quantization(const truth *t, imk_random random, uint64_t stream,
             imk_random_normals(random, stream, 16 + i, 1024, error);
         x[i] += q * (error[i % 1024] - before);
         before = error[i % 1024];
+    }
+}
+
+/* S = B^2 dt/(2 sin(pi f dt)): white noise of B^2 per sample, differenced -1/2 times [HOSKING1981],
+ * with the weights h_k = h_k-1 (k - 1/2)/k of as many samples before the record as in it. */
+static void add_fractional_flicker(const truth *t, imk_random random, uint64_t stream, double *x)
+{
+    size_t n = 1;
+    while (n < 2 * t->samples)
+        n *= 2;
+    const size_t padded = 2 * n, size = imk_fourier_workspace_size(padded);
+    double *a = calloc(2 * padded, sizeof *a), *h = calloc(2 * padded, sizeof *h);
+    double *normals = malloc(n * sizeof *normals);
+    void *workspace = malloc(size);
+    imk_random_normals(random, stream, 0, n, normals);
+    for (size_t k = 0; k < n; k++) {
+        a[2 * k] = t->term[IMK_NOISE_BIAS_INSTABILITY] * normals[k];
+        h[2 * k] = k == 0 ? 1 : h[2 * k - 2] * ((double)k - 0.5) / (double)k;
+    }
+    imk_fourier(padded, a, 0, workspace, size);
+    imk_fourier(padded, h, 0, workspace, size);
+    for (size_t k = 0; k < padded; k++) {
+        const double real = a[2 * k] * h[2 * k] - a[2 * k + 1] * h[2 * k + 1];
+        a[2 * k + 1] = a[2 * k] * h[2 * k + 1] + a[2 * k + 1] * h[2 * k];
+        a[2 * k] = real;
+    }
+    imk_fourier(padded, a, 1, workspace, size);
+    for (size_t i = 0; i < t->samples; i++)
+        x[i] += a[2 * (n - t->samples + i)];
+    free(a), free(h), free(normals), free(workspace);
+}
+
+/* The output is the growth of the angle in whole steps. */
+static void round_angle(const truth *t, double *x)
+{
+    double angle = 0, before = 0;
+    for (size_t i = 0; i < t->samples; i++) {
+        angle += x[i] / t->rate;
+        const double steps = floor(angle / t->angle_step + 0.5);
+        x[i] = (steps - before) * t->angle_step * t->rate;
+        before = steps;
     }
 }
 
@@ -53,9 +98,11 @@ static void make_record(const truth *t, uint64_t seed, uint64_t record, double *
     else if (imk_white_start(&white, t->term[IMK_NOISE_WHITE], dt, random, stream + 1) == IMK_OK)
         imk_white_add(&white, t->samples, x);
     imk_flicker_state flicker;
-    if (t->term[IMK_NOISE_BIAS_INSTABILITY] > 0 &&
-        imk_flicker_start(&flicker, t->term[IMK_NOISE_BIAS_INSTABILITY], dt, random, stream + 2) ==
-            IMK_OK)
+    if (t->fractional)
+        add_fractional_flicker(t, random, stream + 2, x);
+    else if (t->term[IMK_NOISE_BIAS_INSTABILITY] > 0 &&
+             imk_flicker_start(&flicker, t->term[IMK_NOISE_BIAS_INSTABILITY], dt, random,
+                               stream + 2) == IMK_OK)
         imk_flicker_add(&flicker, t->samples, x);
     imk_random_walk_state walk;
     if (imk_random_walk_start(&walk, t->term[IMK_NOISE_RANDOM_WALK], dt, random, stream + 3) ==
@@ -68,17 +115,22 @@ static void make_record(const truth *t, uint64_t seed, uint64_t record, double *
                                    stream + 64 + i) == IMK_OK)
             imk_gauss_markov_add(&gauss_markov, t->samples, x);
     }
-    if (t->resonance.sigma > 0 &&
-        imk_resonance_start(&arma, t->resonance, dt, random, stream + 5) == IMK_OK)
-        imk_arma_add(&arma, t->samples, x);
+    for (size_t i = 0; i < RESONANCES; i++)
+        if (t->resonance[i].sigma > 0 &&
+            imk_resonance_start(&arma, t->resonance[i], dt, random, stream + 80 + i) == IMK_OK)
+            imk_arma_add(&arma, t->samples, x);
     imk_sinusoid_state sinusoid;
     if (t->line.amplitude > 0 &&
         imk_sinusoid_start(&sinusoid, t->line, dt, random, stream + 6) == IMK_OK)
         imk_sinusoid_add(&sinusoid, t->samples, x);
     imk_ramp_add(t->term[IMK_NOISE_RAMP], dt, 0, t->samples, x);
     add_quantization(t, random, stream + 7, x);
+    for (size_t i = 0; t->mean != 0 && i < t->samples; i++)
+        x[i] += t->mean;
     for (size_t i = 0; t->step > 0 && i < t->samples; i++)
         x[i] = t->step * floor(x[i] / t->step + 0.5);
+    if (t->angle_step > 0)
+        round_angle(t, x);
 }
 
 /* Expected power of coefficient k for the parameters p: amounts of Q N B K, then sigma^2 and log T
@@ -94,8 +146,9 @@ static double expected(const truth *t, const double *p, size_t k)
         s += p[1] * imk_arma_spectrum(&arma, f);
     else
         s += p[1];
-    if (t->resonance.sigma > 0 && imk_resonance_arma(t->resonance, dt, &arma) == IMK_OK)
-        s += imk_arma_spectrum(&arma, f);
+    for (size_t i = 0; i < RESONANCES; i++)
+        if (t->resonance[i].sigma > 0 && imk_resonance_arma(t->resonance[i], dt, &arma) == IMK_OK)
+            s += imk_arma_spectrum(&arma, f);
     for (size_t i = 0; i < TIMES; i++)
         if (p[IMK_NOISE_TERMS + 2 * i] > 0)
             s += p[IMK_NOISE_TERMS + 2 * i] *
@@ -106,7 +159,7 @@ static double expected(const truth *t, const double *p, size_t k)
 
 /* Relative standard deviation of each parameter (the square of a strength; log T) at the bound of
  * Cramer and Rao; of the ramp itself, which is independent of the others. */
-static void bounds(const truth *t, double *bound)
+static inline void bounds(const truth *t, double *bound)
 {
     double p[PARAMETERS] = {0}, h[PARAMETERS * PARAMETERS] = {0}, inverse[PARAMETERS * PARAMETERS];
     size_t index[PARAMETERS], count = 0;

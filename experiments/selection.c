@@ -39,7 +39,7 @@ static const truth cases[] = {
     {.name = "N K, 100 s", .rate = 20, .term = {0, 1, 0, 0.1}, .gauss_markov = {{1.5, 100}}},
     {.name = "N, 1 s, 100 s", .rate = 20, .term = {0, 1}, .gauss_markov = {{1, 1}, {1, 100}}},
     {.name = "N B K, line 50 Hz", .rate = 200, .term = {0, 1, 0.5, 0.3}, .line = {0.4, 50}},
-    {.name = "N B, resonance", .rate = 20, .term = {0, 1, 0.15}, .resonance = {1, 3, 16}},
+    {.name = "N B, resonance", .rate = 20, .term = {0, 1, 0.15}, .resonance = {{1, 3, 16}}},
     {.name = "N B, low-pass", .rate = 20, .term = {0, 1, 0.15}, .filter = {6, 0.7}},
     {.name = "N R", .rate = 20, .term = {0, 1, 0, 0, 2.3e-5}},
     {.name = "N B R", .rate = 20, .term = {0, 1, 0.15, 0, 1.3e-4}},
@@ -138,7 +138,7 @@ static void print_case(const experiment *e)
                        bound[IMK_NOISE_TERMS + 2 * i + 1], IMK_NOISE_TERMS + i, true);
         }
     held[LINE] = t->line.amplitude > 0;
-    held[RESONANCE] = t->resonance.sigma > 0;
+    held[RESONANCE] = t->resonance[0].sigma > 0;
     held[FILTER] = t->filter.bandwidth > 0;
     size_t any = 0, false_of[KINDS] = {0};
     for (size_t record = 0; record < e->records; record++) {

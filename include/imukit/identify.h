@@ -44,8 +44,8 @@ typedef struct imk_estimate {
 enum {
     IMK_VERDICT_SHORT =
         1 << 0, /**< the record is too short for the slowest terms: only bounds are given */
-    IMK_VERDICT_COARSE =
-        1 << 1, /**< the resolution step is larger than the noise: do not trust the white noise */
+    IMK_VERDICT_COARSE = 1 << 1, /**< the resolution step is so large that rounding errors are not
+                                    white: do not trust white noise and quantization */
     IMK_VERDICT_LINES =
         1 << 2, /**< spectral lines (vibration, interference), modelled separately */
     IMK_VERDICT_RESONANCE = 1 << 3, /**< structural resonance, modelled separately */
@@ -56,8 +56,13 @@ enum {
         1 << 7, /**< the model does not explain all tau (false alarms: less than one record in
                    10000): see valid_from, valid_to */
     IMK_VERDICT_FROZEN =
-        1 << 8 /**< long runs of one value: samples are repeated, and the true rate is lower */
+        1 << 8, /**< long runs of one value: samples are repeated, and the true rate is lower */
+    IMK_VERDICT_UNDETERMINED = 1 << 12 /**< white noise or quantization is present, but known to no
+                                          better than a factor of three up and down */
 };
+
+/** Bits of imk_identification.ambiguous and .instead: 1 << a term of imk_noise_term, and this. */
+enum { IMK_AMBIGUOUS_GAUSS_MARKOV = 1 << IMK_NOISE_TERMS };
 
 /** Result for one channel. Values are in the channel's unit. */
 typedef struct imk_identification {
@@ -81,10 +86,15 @@ typedef struct imk_identification {
     double longest;         /**< longest tau compared with the record: a ninth of its length [s] */
     double resolution;      /**< smallest step between values [unit]; 0 when none is detected */
     double log_likelihood;
+    double rounding;    /**< white noise of rounding to these steps after the filter [unit of N]; 0
+                           when none is detected: then the white noise holds it */
     size_t missing;     /**< missing samples between the first and the last sample present */
     double largest_gap; /**< longest run of missing samples [s] */
     int rounds; /**< iterations between missing samples and spectrum; 0: no sample is missing */
-    unsigned verdict; /**< IMK_VERDICT_… bits */
+    unsigned verdict;   /**< IMK_VERDICT_… bits */
+    unsigned ambiguous; /**< terms called present without which other terms explain the record about
+                           as well; their intervals begin at 0. Intervals hold either way */
+    unsigned instead;   /**< terms, not called present, that may be there in their place */
 } imk_identification;
 
 /** Summary of a record for a joint estimate (identify_joint.h). */
@@ -126,6 +136,7 @@ IMK_API double imk_identification_allan_variance(const imk_identification *resul
 
 /** Put a channel's result into one axis of a model: its noise terms, its output filter and the
  *  evidence for them. Absent terms become zero in the model, and their bounds go into the evidence.
+ *  Where the output is rounded after its filter, its step becomes the model's resolution.
  *  @param sensor  IMK_GYRO or IMK_ACCEL
  *  @param axis    0 … IMK_AXES_MAX - 1 */
 IMK_API void imk_identification_store(const imk_identification *result, imk_model *model,

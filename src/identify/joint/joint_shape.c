@@ -73,7 +73,7 @@ static void make_shape(const imki_joint_fit *j, size_t slot, double *shape)
 void imki_joint_fit_update(imki_joint_fit *j)
 {
     imki_fit *fit = j->w->fit;
-    make_shape(j, IMK_NOISE_WHITE, fit->shape[IMK_NOISE_WHITE]);
+    imki_fit_set_filter(fit, j->result->filter, j->w->bands);
     for (size_t slot = IMKI_FIRST_RESONANCE; slot < fit->templates; slot++)
         if (fit->active[slot])
             make_shape(j, slot, fit->shape[slot]);
@@ -141,9 +141,9 @@ static double moved(const imki_joint_fit *j, size_t i, double value, double step
         low = 1e-3 / bands->dt;
         high = 10 / bands->dt;
         break;
-    case IMKI_SHAPE_DAMPING: /* the limits of imk_low_pass */
+    case IMKI_SHAPE_DAMPING: /* from the limit of imk_low_pass */
         low = 0.05;
-        high = 50;
+        high = fmax(value, IMKI_OVERDAMPED);
         break;
     case IMKI_SHAPE_FREQUENCY:
         reach = 0.5 / resonances[index].q;

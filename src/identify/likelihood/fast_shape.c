@@ -36,8 +36,6 @@ static const double ROUGHLY = 0.5, FINALLY = 0.02;
 /* What a filter of first and of second order must be worth, as in
  * output_filter.c. */
 static const double FIRST_ORDER = 10, SECOND_ORDER = 13;
-/* Beyond, the second order's faster pole is far above the other: first order. */
-static const double OVERDAMPED = 3;
 /* Frequencies tried, in sample rates: below are the slow terms and the lines,
  * above is folding. */
 static const double LOWEST = 0.01, HIGHEST = 0.49;
@@ -238,14 +236,22 @@ static bool change_filter(imki_joint_fit *j, double white)
     return changed;
 }
 
+/* The slower pole of an overdamped second order. */
+static imk_low_pass first_order_of(imk_low_pass filter)
+{
+    const double z = filter.damping;
+    return (imk_low_pass){filter.bandwidth * (z - sqrt(z * z - 1)), 0};
+}
+
 static void add_resonances(imki_joint_fit *j)
 {
     const int before = j->result->resonance_count;
     double white = j->w->fit->amount[IMK_NOISE_WHITE];
     while (add_resonance(j, IMKI_WIDEST, &white) || add_resonance(j, 2 * IMKI_WIDEST, &white))
-        if (j->result->filter.damping > OVERDAMPED)
-            j->result->filter.damping = 0;
-    if (j->result->resonance_count > before && change_filter(j, white))
+        if (j->result->filter.damping >= IMKI_OVERDAMPED)
+            j->result->filter = first_order_of(j->result->filter);
+    const bool beside = j->result->filter.bandwidth > 0 && j->result->resonance_count > 0;
+    if ((j->result->resonance_count > before || beside) && change_filter(j, white))
         while (add_resonance(j, 2 * IMKI_WIDEST, &white))
             continue;
     for (int r = j->result->resonance_count - 1; r >= 0; r--) {
@@ -253,6 +259,26 @@ static void add_resonances(imki_joint_fit *j)
         if (j->w->fit->active[slot] && !(j->w->fit->amount[slot] > 0))
             drop(j, (size_t)r);
     }
+}
+
+static void set_slow_aside(imki_fit *fit)
+{
+    for (size_t i = 0; i < IMKI_GAUSS_MARKOV_MAX; i++) {
+        fit->active[IMKI_FIRST_GAUSS_MARKOV + i] = false;
+        fit->amount[IMKI_FIRST_GAUSS_MARKOV + i] = 0;
+    }
+}
+
+/* The Gauss-Markov term was found beside an unfinished shape: is it needed beside this one? If not,
+ * it would bend filter and resonances. */
+static void doubt_slow(imki_joint_fit *j)
+{
+    if (!j->w->fit->active[IMKI_FIRST_GAUSS_MARKOV])
+        return;
+    const shape_state with = keep(j);
+    set_slow_aside(j->w->fit);
+    if (imki_joint_fit_maximise(j) + GAIN_TRIED < with.amounts.log_likelihood)
+        restore(j, &with);
 }
 
 /* Where the residuals of the fast end scatter more than their degrees of
@@ -292,13 +318,11 @@ int imki_fast_shape_refine(imki_work *w, imk_identification *result)
     imki_joint_fit_maximise(j);
     add_resonances(j);
     j->enough = FINALLY;
+    doubt_slow(j);
     for (int i = 0; i < TEMPERINGS; i++)
         temper(j);
     /* The slow terms are chosen later, all together. */
-    for (size_t i = 0; i < IMKI_GAUSS_MARKOV_MAX; i++) {
-        fit->active[IMKI_FIRST_GAUSS_MARKOV + i] = false;
-        fit->amount[IMKI_FIRST_GAUSS_MARKOV + i] = 0;
-    }
+    set_slow_aside(fit);
     imki_fit_maximise(fit, w->bands);
     return result->resonance_count - before;
 }

@@ -95,7 +95,7 @@ static bool take_time_step(imki_fit *fit, const imki_bands *bands, int held, siz
     for (double part = 1; part > 0.05; part *= 0.4) {
         for (size_t i = 0; i < count; i++) {
             const double time = start.correlation_time[terms[i]] * exp(part * step[i]);
-            set_time(fit, bands, terms[i], fmax(0.5 * shortest, fmin(2 * longest, time)));
+            set_time(fit, bands, terms[i], fmax(0.25 * shortest, fmin(2 * longest, time)));
         }
         if (refit(fit, bands, held) > start.log_likelihood)
             return true;

@@ -75,4 +75,6 @@ void imk_identification_store(const imk_identification *result, imk_model *model
         noise->resonance_count = result->resonance_count;
     triad->bandwidth.value[axis] = result->filter.bandwidth;
     triad->damping.value[axis] = result->filter.damping;
+    if (result->rounding > 0)
+        triad->resolution.value[axis] = result->resolution;
 }

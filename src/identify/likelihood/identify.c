@@ -186,6 +186,7 @@ void imki_identification_rescale(imk_identification *result, double factor)
     for (int i = 0; i < result->resonance_count; i++)
         result->resonance[i].sigma *= factor;
     result->minimum_floor *= factor;
+    result->rounding *= factor;
 }
 
 bool imki_identification_is_finite(const imk_identification *result)

@@ -37,6 +37,7 @@ typedef struct imki_bands {
     double degrees[IMKI_BANDS_MAX];        /* coefficients in the band */
     size_t length[IMKI_BANDS_MAX];         /* samples of the transform behind it: n, or a segment */
     double power[IMKI_BANDS_MAX];          /* their mean square times dt: an estimate of S */
+    double rounding;                       /* white noise of rounding the output; 0: none */
     size_t singles;                        /* leading bands of one coefficient, k = 1 … singles */
     double coefficient[IMKI_SINGLE_BANDS]; /* those coefficients, with sign */
     double ramp[IMKI_SINGLE_BANDS];        /* what a ramp of 1 unit/s adds to them */
@@ -62,6 +63,7 @@ typedef struct imki_fit {
     double shape[IMKI_TEMPLATES_MAX][IMKI_BANDS_MAX]; /* for amount 1 */
     bool active[IMKI_TEMPLATES_MAX];
     double amount[IMKI_TEMPLATES_MAX]; /* squares: Q^2, N^2, B^2, K^2, sigma^2 */
+    double floor;                      /* known part of S: what comes after the filter */
     bool ramp_active;
     double ramp;                                    /* [unit/s] */
     double correlation_time[IMKI_GAUSS_MARKOV_MAX]; /* [s], of the shapes; 0: no shape yet */
@@ -107,6 +109,9 @@ void imki_bands_build(imki_bands *bands, size_t n, double dt, const double *coef
 /* Spectra of unit resonances and of filtered white noise of unit density at the bands. */
 void imki_resonance_shape(double frequency, double q, const imki_bands *bands, double *shape);
 void imki_filter_shape(imk_low_pass filter, const imki_bands *bands, double *shape);
+/* The white template of a fit through a filter (bandwidth 0: none), and the floor: the output is
+ * rounded after the filter. Without one, the rounding is part of the white noise. */
+void imki_fit_set_filter(imki_fit *fit, imk_low_pass filter, const imki_bands *bands);
 
 /* spectral_fit.c: all return the log-likelihood, and leave it in the fit. */
 double imki_fit_maximise(imki_fit *fit, const imki_bands *bands);
@@ -167,8 +172,25 @@ typedef struct imki_penalties {
     double significance; /* of a ramp */
 } imki_penalties;
 imki_penalties imki_penalties_of(const imki_bands *bands, double significance);
+/* The likeliest set that the search has met for each number of Gauss-Markov terms (the last: that
+ * many or more), without and with a ramp; -infinity: none. Bias instability and random walk do not
+ * divide the sets: intervals have them free in any case. */
+enum { IMKI_ALTERNATIVE_COUNTS = 4 };
+typedef struct imki_alternatives {
+    double log_likelihood[2][IMKI_ALTERNATIVE_COUNTS];
+    imki_amounts set[2][IMKI_ALTERNATIVE_COUNTS];
+} imki_alternatives;
 /* Returns the likelihood less the penalties of the set, which is left in the fit. */
-double imki_terms_choose(imki_fit *fit, const imki_bands *bands, const imki_penalties *penalties);
+double imki_terms_choose(imki_fit *fit, const imki_bands *bands, const imki_penalties *penalties,
+                         imki_alternatives *met);
+
+/* Damping above which the second order's faster pole is far above the other: first order. */
+#define IMKI_OVERDAMPED 3.0
+
+/* Step of the output, in Allan deviations at one sample, up to which rounding errors are white: of
+ * unfiltered noise (1.6 standard deviations, or 2.1 for the angle), of filtered noise. */
+#define IMKI_STEP_WHITE 1.45
+#define IMKI_STEP_FILTERED 2.2
 
 /* Quality above which a resonance counts as a narrow line. */
 #define IMKI_NARROW 50.0
@@ -185,6 +207,7 @@ typedef struct imki_work {
     size_t transform_size;
     imki_bands *bands;
     imki_fit *fit, *trial, *chosen;
+    imki_alternatives *alternatives, *spare; /* of the search that chose the terms; of another */
     size_t line_count;
     imki_line lines[IMKI_LINES_MAX]; /* left out of the fit */
     struct imki_missing *missing;    /* missing_internal.h; NULL: none are */
@@ -204,7 +227,33 @@ static inline void imki_work_take_fits(imki_work *w, imki_parts *parts)
     w->fit = imki_take(parts, sizeof *w->fit);
     w->trial = imki_take(parts, sizeof *w->trial);
     w->chosen = imki_take(parts, sizeof *w->chosen);
+    w->alternatives = imki_take(parts, sizeof *w->alternatives);
+    w->spare = imki_take(parts, sizeof *w->spare);
 }
+
+/* A likelihood held at places of one parameter: a strength (by its square root), the ramp, or the
+ * correlation time of a Gauss-Markov term (by its logarithm). */
+typedef struct imki_interval_profile {
+    imki_fit *fit;
+    const imki_bands *bands;
+    int held, held_time;
+    imki_amounts best;
+    double drop; /* of the log-likelihood, at the interval's end */
+} imki_interval_profile;
+/* profile_interval.c: below 0 inside the interval. The fit is left at the place. */
+double imki_interval_beyond(const imki_interval_profile *p, double place);
+/* End of the interval in the direction of `step`, at most at `limit`. */
+double imki_interval_end(const imki_interval_profile *p, double start, double step, double limit);
+/* A profile of a strength or of the ramp around the maximum at which the fit is, with its centre
+ * and a first step from it. */
+imki_interval_profile imki_interval_profile_at(const imki_work *w, int held, double drop,
+                                               double *centre, double *step);
+/* White noise, bias instability, random walk and a term free as well; everything fitted again. */
+void imki_intervals_free(imki_work *w, int term);
+
+/* alternative_intervals.c: intervals that hold for the other sets of terms, too, that explain the
+ * record about as well; the fit is left as it was. */
+void imki_intervals_join(imki_work *w, imk_identification *result, double drop);
 
 /* fast_shape.c: fits the filter and the wide resonances jointly with all amounts, and adds the
  * resonances that the residuals ask for; returns how many. Uses `trial` and `chosen`. */

@@ -6,75 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-/* A likelihood held at places of one parameter: a strength (by its square root), the ramp, or the
- * correlation time of a Gauss-Markov term (by its logarithm). */
-typedef struct profile {
-    imki_fit *fit;
-    const imki_bands *bands;
-    int held, held_time;
-    imki_amounts best;
-    double drop; /* of the log-likelihood, at the interval's end */
-} profile;
-
-/* Signed root of twice the fall of the likelihood, less what it is at the interval's end: nearly
- * linear in the place. The fit is left at the place, so that the next one starts from there. */
-static double beyond(const profile *p, double place)
-{
-    if (p->held_time >= 0) {
-        const size_t term = (size_t)p->held_time;
-        p->fit->correlation_time[term] = exp(place);
-        imki_gauss_markov_shape(p->fit, p->bands, exp(place),
-                                p->fit->shape[IMKI_FIRST_GAUSS_MARKOV + term]);
-    } else if (p->held == IMKI_HELD_RAMP) {
-        p->fit->ramp = place;
-    } else {
-        p->fit->amount[p->held] = place * place;
-    }
-    const double fall =
-        p->best.log_likelihood - imki_gauss_markov_settle(p->fit, p->bands, p->held, p->held_time);
-    return sqrt(fmax(0, 2 * fall)) - sqrt(2 * p->drop);
-}
-
-/* End of the interval in the direction of `step`, at most at `limit`: bracketed by growing steps,
- * then by regula falsi, the value of an end that stays halved [DOWELL1971]. */
-static double profile_end(const profile *p, double start, double step, double limit)
-{
-    double inside = start, outside = start, at_inside = -sqrt(2 * p->drop), at_outside = 0;
-    imki_fit_restore(p->fit, p->bands, &p->best);
-    for (int i = 0; i < 60; i++) {
-        outside = step > 0 ? fmin(outside + step, limit) : fmax(outside + step, limit);
-        at_outside = beyond(p, outside);
-        if (at_outside > 0)
-            break;
-        if (outside == limit)
-            return limit;
-        inside = outside;
-        at_inside = at_outside;
-        step *= at_inside < -0.8 * sqrt(2 * p->drop) ? 4 : 1.5;
-    }
-    for (int i = 0, side = 0; i < 30 && fabs(outside - inside) > 1e-4 * fabs(outside - start);
-         i++) {
-        double place = inside - at_inside * (outside - inside) / (at_outside - at_inside);
-        if (!(fabs(place - inside) < fabs(outside - inside)))
-            place = 0.5 * (inside + outside);
-        const double at = beyond(p, place);
-        if (fabs(at) < 1e-4)
-            return place;
-        if (at > 0) {
-            outside = place;
-            at_outside = at;
-            at_inside *= side > 0 ? 0.5 : 1;
-            side = 1;
-        } else {
-            inside = place;
-            at_inside = at;
-            at_outside *= side < 0 ? 0.5 : 1;
-            side = -1;
-        }
-    }
-    return 0.5 * (inside + outside);
-}
-
 /* Values, sigmas and correlations of the chosen terms. */
 static void store_values(const imki_work *w, imk_identification *result)
 {
@@ -104,18 +35,9 @@ static void store_values(const imki_work *w, imk_identification *result)
     result->log_likelihood = fit->log_likelihood;
 }
 
-/* Bartlett's factor of the likelihood ratio [BARTLETT1937]: for a variance estimated with v degrees
- * of freedom its mean is v [log(v/2) - digamma(v/2)] ~ 1 + 1/(3v), not 1. Here v = 2 (amount/sd)^2,
- * at least 2. */
-static double small_sample_factor(double amount, double sd)
-{
-    const double degrees = 2 * (amount / sd) * (amount / sd);
-    return 1 + 1 / (3 * (degrees > 2 ? degrees : 2));
-}
-
 /* Everything that was chosen, with white noise, bias instability, random walk and the term itself
  * free as well. */
-static void set_free(imki_work *w, int term)
+void imki_intervals_free(imki_work *w, int term)
 {
     static const bool always[IMK_NOISE_TERMS] = {false, true, true, true, false};
     imki_fit *fit = w->fit;
@@ -128,35 +50,20 @@ static void set_free(imki_work *w, int term)
     imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
 }
 
-/* Centre of the interval of a strength or of the ramp at the fit, and a first step from it; allows
- * for a strength known from few coefficients in the drop. */
-static double centre_of(const imki_work *w, int held, profile *p, double *step)
-{
-    imki_fit *fit = w->fit;
-    if (held == IMKI_HELD_RAMP) {
-        *step = 1 / sqrt(imki_fit_ramp_information(fit, w->bands));
-        return fit->ramp;
-    }
-    double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
-    imki_fit_covariance(fit, w->bands, covariance);
-    const double sd = sqrt(covariance[(size_t)held * fit->templates + (size_t)held]);
-    const double centre = sqrt(fit->amount[held]);
-    p->drop *= small_sample_factor(fit->amount[held], sd);
-    *step = 2 * (sqrt(fit->amount[held] + sd) - centre); /* near the end of 95 % */
-    return centre;
-}
-
 /* Interval of a strength or the ramp around the maximum at which the fit is. */
 static void interval_at(const imki_work *w, int held, double drop, imk_estimate *e)
 {
-    profile p = {w->fit, w->bands, held, IMKI_HELD_NONE, imki_fit_keep(w->fit), drop};
     const bool ramp = held == IMKI_HELD_RAMP;
-    double step;
-    const double centre = centre_of(w, held, &p, &step);
+    double centre, step;
+    const imki_interval_profile p = imki_interval_profile_at(w, held, drop, &centre, &step);
     e->free_value = centre;
-    e->upper = profile_end(&p, centre, step, HUGE_VAL);
-    e->lower = centre == 0 && !ramp ? 0 : profile_end(&p, centre, -step, ramp ? -HUGE_VAL : 0);
+    e->upper = imki_interval_end(&p, centre, step, HUGE_VAL);
+    e->lower =
+        centre == 0 && !ramp ? 0 : imki_interval_end(&p, centre, -step, ramp ? -HUGE_VAL : 0);
 }
+
+/* Likelihood that one more parameter costs, where the interval covers both sets [AKAIKE1978]. */
+static const double COST = 1;
 
 /* Whether quantization was called present, just or just not, moves white noise by more than its
  * interval is wide. Where the choice was close, the interval covers both: of the other model what
@@ -172,7 +79,8 @@ static void widen_for_quantization(imki_work *w, double drop, imk_estimate *e)
     fit->amount[IMK_NOISE_QUANTIZATION] =
         on ? 0.1 * fit->amount[IMK_NOISE_WHITE] * w->bands->dt * w->bands->dt : 0;
     const double other = imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
-    const double ahead = chosen - other + (on ? needed : -needed), left = drop - ahead;
+    const double ahead = chosen - other + (on ? needed : -needed);
+    const double left = drop - (chosen - other + (on ? COST : -COST));
     imk_estimate too;
     if (!(left > 0.01 * drop))
         return;
@@ -191,7 +99,7 @@ static void store_interval(imki_work *w, imk_identification *result, int term, d
 {
     imk_estimate *e = &result->term[term];
     const imki_amounts chosen = imki_fit_keep(w->fit);
-    set_free(w, term);
+    imki_intervals_free(w, term);
     const imki_amounts freed = imki_fit_keep(w->fit);
     interval_at(w, term == IMK_NOISE_RAMP ? IMKI_HELD_RAMP : term, drop, e);
     if (term == IMK_NOISE_WHITE) {
@@ -215,13 +123,12 @@ static void store_gauss_markov(imki_work *w, imk_identification *result, size_t 
     const double time = chosen.correlation_time[term];
     g->sigma = (imk_estimate){.present = true, .value = sqrt(chosen.amount[slot])};
     g->correlation_time = (imk_estimate){.present = true, .value = time};
-    set_free(w, IMK_NOISE_WHITE);
-    profile p = {w->fit, w->bands, (int)slot, IMKI_HELD_NONE, imki_fit_keep(w->fit), drop};
-    double step;
-    const double sigma = centre_of(w, (int)slot, &p, &step);
+    imki_intervals_free(w, IMK_NOISE_WHITE);
+    double sigma, step;
+    imki_interval_profile p = imki_interval_profile_at(w, (int)slot, drop, &sigma, &step);
     g->sigma.free_value = sigma;
-    g->sigma.lower = sigma > 0 ? profile_end(&p, sigma, -step, 0) : 0;
-    g->sigma.upper = profile_end(&p, sigma, step, HUGE_VAL);
+    g->sigma.lower = sigma > 0 ? imki_interval_end(&p, sigma, -step, 0) : 0;
+    g->sigma.upper = imki_interval_end(&p, sigma, step, HUGE_VAL);
     g->sigma.sigma = (g->sigma.upper - g->sigma.lower) / (2 * sqrt(2 * drop));
 
     /* A correlation time beyond a hundred times the estimate is not told. */
@@ -231,8 +138,8 @@ static void store_gauss_markov(imki_work *w, imk_identification *result, size_t 
     imk_estimate *t = &g->correlation_time;
     const double free_time = p.best.correlation_time[term], place = log(free_time);
     t->free_value = free_time;
-    t->lower = exp(profile_end(&p, place, -0.3, place - 4.6));
-    t->upper = exp(profile_end(&p, place, 0.3, place + 4.6));
+    t->lower = exp(imki_interval_end(&p, place, -0.3, place - 4.6));
+    t->upper = exp(imki_interval_end(&p, place, 0.3, place + 4.6));
     t->sigma = (t->upper - t->lower) / (2 * sqrt(2 * drop));
     imki_fit_restore(w->fit, w->bands, &chosen);
 }
@@ -257,6 +164,22 @@ static void store_gauss_markovs(imki_work *w, imk_identification *result, double
     }
 }
 
+/* Slow noise is told when there is some, and bias instability, if it is that, to a factor of 3. */
+static bool is_short(const imk_identification *result)
+{
+    const imk_estimate *b = &result->term[IMK_NOISE_BIAS_INSTABILITY];
+    const bool other = result->term[IMK_NOISE_RANDOM_WALK].present ||
+                       result->term[IMK_NOISE_RAMP].present || result->gauss_markov_count > 0;
+    return b->present ? b->upper > 3 * b->lower : !other;
+}
+
+/* Known to no better than a factor of three up and down: filter, resonances or another term take
+ * its place. */
+static bool is_undetermined(const imk_estimate *e)
+{
+    return e->present && !(e->upper <= 9 * e->lower);
+}
+
 void imki_identify_intervals(imki_work *w, imk_identification *result)
 {
     const double drop = 0.5 * imk_chi_square_quantile(w->settings->confidence, 1);
@@ -264,5 +187,11 @@ void imki_identify_intervals(imki_work *w, imk_identification *result)
     for (int term = 0; term < IMK_NOISE_TERMS; term++)
         store_interval(w, result, term, drop);
     store_gauss_markovs(w, result, drop);
+    if (is_short(result))
+        result->verdict |= IMK_VERDICT_SHORT;
+    imki_intervals_join(w, result, drop);
     imki_identify_widen(w, result);
+    if (is_undetermined(&result->term[IMK_NOISE_WHITE]) ||
+        is_undetermined(&result->term[IMK_NOISE_QUANTIZATION]))
+        result->verdict |= IMK_VERDICT_UNDETERMINED;
 }

@@ -96,12 +96,29 @@ void imki_identify_lines(imki_work *w, imk_identification *result)
             w->lines[w->line_count++] = imki_line_widen(&lines[i], w->n);
 }
 
-void imki_identify_bands(imki_work *w, const imk_identification *result)
+/* Allan deviation at one sample: half the mean square of differences of neighbours. */
+static double first_allan_deviation(const imki_bands *bands)
+{
+    double sum = 0, degrees = 0;
+    for (size_t b = 0; b < bands->count; b++) {
+        const double s = sin(3.141592653589793 * bands->frequency[b] * bands->dt);
+        sum += bands->degrees[b] * bands->power[b] * 2 * s * s;
+        degrees += bands->degrees[b];
+    }
+    return sqrt(sum / (degrees * bands->dt));
+}
+
+/* White noise of rounding to steps, where it is white. */
+static void set_rounding(imki_bands *bands, double step)
+{
+    const bool white = step > 0 && step < IMKI_STEP_FILTERED * first_allan_deviation(bands);
+    bands->rounding = white ? step * step / 12 * bands->dt : 0;
+}
+
+static void build_bands(imki_work *w, const imk_identification *result)
 {
     const double dt = w->settings->dt;
     const size_t resonances = (size_t)result->resonance_count;
-    if (w->bands_given)
-        return;
     if (w->spectrum_count == 0) {
         imki_bands_build(w->bands, w->n, dt, w->coefficients, w->cumulative, w->line_count,
                          w->lines, resonances, result->resonance);
@@ -114,4 +131,11 @@ void imki_identify_bands(imki_work *w, const imk_identification *result)
     w->bands->count = w->bands->singles = 0;
     for (size_t i = 0; i < w->spectrum_count; i++)
         imki_bands_add(w->bands, &w->spectra[i], resonances, result->resonance);
+}
+
+void imki_identify_bands(imki_work *w, const imk_identification *result)
+{
+    if (!w->bands_given)
+        build_bands(w, result);
+    set_rounding(w->bands, result->resolution * w->scale);
 }

@@ -54,22 +54,37 @@ static void fit_fast_end(imki_work *w, imk_identification *result, double needed
         result->filter = imki_filter_find(w->fit, w->bands);
         imki_fast_shape_refine(w, result);
     }
-    if (result->filter.bandwidth > 0 && w->fit->active[IMK_NOISE_QUANTIZATION])
+    const bool shaped = result->filter.bandwidth > 0 || result->resonance_count > 0;
+    if (shaped && w->fit->active[IMK_NOISE_QUANTIZATION])
         try_quantization(w, needed);
 }
 
+static bool is_deep(imk_low_pass filter, const imki_bands *bands)
+{
+    return filter.bandwidth * bands->dt < 0.1;
+}
+
+static bool has_gauss_markov(const imki_fit *fit)
+{
+    for (size_t i = IMKI_FIRST_GAUSS_MARKOV; i < IMKI_FIRST_RESONANCE; i++)
+        if (fit->active[i] && fit->amount[i] > 0)
+            return true;
+    return false;
+}
+
 /* A low-pass far inside the band looks like a Gauss-Markov term above white noise, and the other
- * way round: both are tried to the end. The filter costs what it had to earn. */
+ * way round; a filter and a Gauss-Markov term can stand for one of a few samples. Both are tried to
+ * the end. The filter costs what it had to earn. */
 static double choose_without_filter(imki_work *w, const imki_penalties *penalties)
 {
     imki_fit *fit = w->fit;
-    imki_filter_shape((imk_low_pass){0, 0}, w->bands, fit->shape[IMK_NOISE_WHITE]);
+    imki_fit_set_filter(fit, (imk_low_pass){0, 0}, w->bands);
     fit->active[IMK_NOISE_BIAS_INSTABILITY] = fit->active[IMK_NOISE_RANDOM_WALK] = true;
     fit->amount[IMK_NOISE_WHITE] = w->bands->power[w->bands->count * 3 / 4];
     imki_gauss_markov_add(fit, w->bands, 0);
     imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
     try_quantization(w, penalties->term);
-    return imki_terms_choose(fit, w->bands, penalties);
+    return imki_terms_choose(fit, w->bands, penalties, w->alternatives);
 }
 
 static void choose_terms(imki_work *w, imk_identification *result)
@@ -77,20 +92,26 @@ static void choose_terms(imki_work *w, imk_identification *result)
     /* What imki_filter_find() asks for its two parameters, or three. */
     const double filter_penalty = result->filter.damping > 0 ? 13 : 10;
     const imki_penalties penalties = imki_penalties_of(w->bands, w->settings->significance);
-    const bool deep = result->filter.bandwidth > 0 && result->filter.bandwidth * w->bands->dt < 0.1;
-    if (deep)
+    const bool filtered = result->filter.bandwidth > 0;
+    if (filtered)
         imki_fit_copy(w->trial, w->fit, w->bands);
-    const double filtered = imki_terms_choose(w->fit, w->bands, &penalties) - filter_penalty;
-    if (!deep)
+    const double score =
+        imki_terms_choose(w->fit, w->bands, &penalties, w->alternatives) - filter_penalty;
+    if (!filtered || !(is_deep(result->filter, w->bands) || has_gauss_markov(w->fit)))
         return;
     imki_fit *chosen = w->fit;
+    imki_alternatives *met = w->alternatives;
     w->fit = w->trial;
     w->trial = chosen;
-    if (choose_without_filter(w, &penalties) > filtered) {
+    w->alternatives = w->spare;
+    w->spare = met;
+    if (choose_without_filter(w, &penalties) > score) {
         result->filter = (imk_low_pass){0, 0};
     } else {
         w->trial = w->fit;
         w->fit = chosen;
+        w->spare = w->alternatives;
+        w->alternatives = met;
     }
 }
 
@@ -100,4 +121,5 @@ void imki_identify_terms(imki_work *w, imk_identification *result)
     set_templates(w, result);
     fit_fast_end(w, result, imki_penalties_of(w->bands, w->settings->significance).term);
     choose_terms(w, result);
+    result->rounding = sqrt(w->fit->floor);
 }

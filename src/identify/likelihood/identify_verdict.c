@@ -19,7 +19,7 @@ double imk_identification_allan_variance(const imk_identification *result, doubl
         imk_ramp_allan_variance(t[IMK_NOISE_RAMP].value, (double)m * dt)};
     if (term >= 0 && term < IMK_NOISE_TERMS)
         return part[term];
-    double sum = 0;
+    double sum = imk_white_sampled_allan_variance(result->rounding, dt, m);
     for (int i = 0; i < IMK_NOISE_TERMS; i++)
         sum += part[i];
     for (int i = 0; i < result->gauss_markov_count; i++) {
@@ -65,13 +65,29 @@ static void compare_with_allan(imki_work *w, imk_identification *result)
     imk_identification five = *result;
     five.gauss_markov_count = five.sinusoid_count = five.resonance_count = 0;
     five.filter = (imk_low_pass){0, 0};
+    five.rounding = 0;
     double five_terms_to;
     imki_agreement(w, &five, count, points, &result->five_terms_from, &five_terms_to);
+}
+
+/* Are the steps of the output so large that rounding errors are not white? Then nobody knows how
+ * much of the noise is theirs. */
+static void assess_steps(const imki_work *w, imk_identification *result)
+{
+    const imk_allan_point *first = w->points;
+    const double step = result->resolution * w->scale;
+    const double most = result->filter.bandwidth > 0 ? IMKI_STEP_FILTERED : IMKI_STEP_WHITE;
+    if (!w->points || first->m != 1)
+        return;
+    result->verdict &= ~(unsigned)IMK_VERDICT_COARSE;
+    if (step > most * first->deviation)
+        result->verdict |= IMK_VERDICT_COARSE;
 }
 
 void imki_identify_assess(imki_work *w, imk_identification *result)
 {
     compare_with_allan(w, result);
+    assess_steps(w, result);
     if (result->sinusoid_count > 0)
         result->verdict |= IMK_VERDICT_LINES;
     if (result->resonance_count > 0)
@@ -80,11 +96,4 @@ void imki_identify_assess(imki_work *w, imk_identification *result)
         result->verdict |= IMK_VERDICT_FILTERED;
     if (result->valid_from > 1.5 * w->settings->dt || result->valid_to < 0.99 * result->longest)
         result->verdict |= IMK_VERDICT_MISFIT;
-    /* Slow noise is told when there is some, and bias instability, if it is that, to a factor of 3.
-     */
-    const imk_estimate *b = &result->term[IMK_NOISE_BIAS_INSTABILITY];
-    const bool other = result->term[IMK_NOISE_RANDOM_WALK].present ||
-                       result->term[IMK_NOISE_RAMP].present || result->gauss_markov_count > 0;
-    if (b->present ? b->upper > 3 * b->lower : !other)
-        result->verdict |= IMK_VERDICT_SHORT;
 }

@@ -12,9 +12,15 @@
 static const double GAIN_MIN = 10;
 enum { GRID = 14, TURNS = 3, SECTIONS = 12 };
 
-static double likelihood_with(imki_fit *fit, const imki_bands *bands, imk_low_pass filter)
+void imki_fit_set_filter(imki_fit *fit, imk_low_pass filter, const imki_bands *bands)
 {
     imki_filter_shape(filter, bands, fit->shape[IMK_NOISE_WHITE]);
+    fit->floor = filter.bandwidth > 0 ? bands->rounding : 0;
+}
+
+static double likelihood_with(imki_fit *fit, const imki_bands *bands, imk_low_pass filter)
+{
+    imki_fit_set_filter(fit, filter, bands);
     return imki_fit_maximise(fit, bands);
 }
 
@@ -58,8 +64,8 @@ static double fit_order(imki_fit *fit, const imki_bands *bands, double damping,
     for (int turn = 0; turn < (damping > 0 ? TURNS : 1); turn++) {
         const double reach = turn == 0 ? 1 : 0.3;
         best = search(&s, &filter->bandwidth, 1e-3 * rate, 10 * rate, reach * step);
-        if (damping > 0) /* the limits of imk_low_pass */
-            best = search(&s, &filter->damping, 0.05, 50, reach);
+        if (damping > 0) /* from the limit of imk_low_pass */
+            best = search(&s, &filter->damping, 0.05, IMKI_OVERDAMPED, reach);
     }
     return best;
 }

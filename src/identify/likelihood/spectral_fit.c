@@ -26,7 +26,7 @@
 
 double imki_fit_spectrum(const imki_fit *fit, size_t band)
 {
-    double s = 0;
+    double s = fit->floor;
     for (size_t j = 0; j < fit->templates; j++)
         if (fit->active[j])
             s += fit->amount[j] * fit->shape[j][band];
@@ -36,7 +36,8 @@ double imki_fit_spectrum(const imki_fit *fit, size_t band)
 /* Row by row, which the compiler vectorises. */
 static void add_spectrum(const imki_fit *fit, size_t count, double *restrict spectrum)
 {
-    memset(spectrum, 0, count * sizeof *spectrum);
+    for (size_t b = 0; b < count; b++)
+        spectrum[b] = fit->floor;
     for (size_t j = 0; j < fit->templates; j++)
         if (fit->active[j] && fit->amount[j] > 0) {
             const double *restrict shape = fit->shape[j], amount = fit->amount[j];
@@ -349,6 +350,7 @@ void imki_fit_copy(imki_fit *to, const imki_fit *from, const imki_bands *bands)
 {
     const imki_amounts kept = imki_fit_keep(from);
     to->templates = from->templates;
+    to->floor = from->floor;
     memcpy(to->sine_square, from->sine_square, bands->count * sizeof(double));
     memcpy(to->correlation_time, from->correlation_time, sizeof to->correlation_time);
     for (size_t j = 0; j < from->templates; j++)

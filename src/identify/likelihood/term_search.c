@@ -30,6 +30,7 @@ typedef struct search {
     imki_fit *fit;
     const imki_bands *bands;
     const imki_penalties *penalties;
+    imki_alternatives *met;
 } search;
 
 imki_penalties imki_penalties_of(const imki_bands *bands, double significance)
@@ -75,6 +76,30 @@ static double ramp_penalty(const search *s)
     return 0.5 * (v + 1) / v * ratio * ratio * z * z;
 }
 
+static void remember(search *s)
+{
+    const imki_fit *fit = s->fit;
+    size_t count = 0;
+    for (size_t i = 0; i < IMKI_GAUSS_MARKOV_MAX; i++) {
+        const size_t slot = IMKI_FIRST_GAUSS_MARKOV + i;
+        count += fit->active[slot] && fit->amount[slot] > 0;
+    }
+    if (count >= IMKI_ALTERNATIVE_COUNTS)
+        count = IMKI_ALTERNATIVE_COUNTS - 1;
+    double *best = &s->met->log_likelihood[fit->ramp_active][count];
+    if (fit->log_likelihood > *best) {
+        *best = fit->log_likelihood;
+        s->met->set[fit->ramp_active][count] = imki_fit_keep(fit);
+    }
+}
+
+static void forget(imki_alternatives *met)
+{
+    for (size_t ramp = 0; ramp < 2; ramp++)
+        for (size_t i = 0; i < IMKI_ALTERNATIVE_COUNTS; i++)
+            met->log_likelihood[ramp][i] = -HUGE_VAL;
+}
+
 /* The likelihood of the fit's set of terms less its penalties, everything fitted. */
 static double score(search *s)
 {
@@ -88,6 +113,7 @@ static double score(search *s)
         fit->ramp_active = true;
     }
     imki_gauss_markov_settle(fit, s->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
+    remember(s);
     for (size_t j = 0; j < IMKI_FIRST_RESONANCE; j++)
         if (fit->active[j])
             penalty +=
@@ -193,6 +219,9 @@ static double improve(search *s)
     }
 }
 
+/* Gain at which a set is remembered, though it will not be chosen. */
+static const double WORTH_MEETING = 0.5;
+
 /* With one more Gauss-Markov term, from the present set with or without bias instability and random
  * walk, which together take the place of a Gauss-Markov term, or it theirs. */
 static double with_gauss_markov(search *s, bool five_terms)
@@ -205,13 +234,18 @@ static double with_gauss_markov(search *s, bool five_terms)
             drop(s->fit, slow[i]);
     add(s, IMK_NOISE_WHITE);
     imki_gauss_markov_settle(s->fit, s->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
-    return imki_gauss_markov_add(s->fit, s->bands, 0.5 * s->penalties->term) ? improve(s)
-                                                                             : -HUGE_VAL;
+    const double before = s->fit->log_likelihood;
+    if (!imki_gauss_markov_add(s->fit, s->bands, WORTH_MEETING))
+        return -HUGE_VAL;
+    const bool hopeful = s->fit->log_likelihood > before + 0.5 * s->penalties->term;
+    return hopeful ? improve(s) : score(s);
 }
 
-double imki_terms_choose(imki_fit *fit, const imki_bands *bands, const imki_penalties *penalties)
+double imki_terms_choose(imki_fit *fit, const imki_bands *bands, const imki_penalties *penalties,
+                         imki_alternatives *met)
 {
-    search s = {fit, bands, penalties};
+    search s = {fit, bands, penalties, met};
+    forget(met);
     double best = improve(&s);
     imki_amounts chosen = imki_fit_keep(fit);
     for (size_t term = 0; term < IMKI_GAUSS_MARKOV_MAX; term++) {

@@ -50,6 +50,7 @@ static parts parts_of(const imk_identify_record *r)
     p.total = 64 + 2 * imki_aligned((means + 1) * sizeof(double)) + imki_aligned(p.transform_size) +
               imki_aligned(IMKI_POINTS_MAX * sizeof(imk_allan_point)) +
               imki_aligned(sizeof(imki_bands)) + 3 * imki_aligned(sizeof(imki_fit)) +
+              2 * imki_aligned(sizeof(imki_alternatives)) +
               imki_aligned(sizeof(imki_record_spectra));
     return p;
 }

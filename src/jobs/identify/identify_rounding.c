@@ -105,6 +105,7 @@ static void round_triad(imk_triad *triad, imk_evidence *evidence, imk_quantity q
     round_lists(noise, unit);
     round_axes(&triad->bandwidth, "Hz");
     round_axes(&triad->damping, "1");
+    round_axes(&triad->resolution, unit);
     for (int i = 0; i < evidence->interval_count; i++)
         round_interval(&evidence->interval[i], unit_of_key(evidence->interval[i].key, terms, unit));
 }

@@ -240,6 +240,56 @@ static bool find_resonance(const imk_identify_log *log, size_t channel, imki_tex
     return true;
 }
 
+/* Terms of a mask, as "bias instability, ramp". */
+static void add_terms(imki_text *text, unsigned terms)
+{
+    static const char *const names[] = {"quantization", "white noise", "bias instability",
+                                        "random walk",  "ramp",        "Gauss-Markov noise"};
+    const char *between = "";
+    for (unsigned k = 0; k < sizeof names / sizeof names[0]; k++)
+        if (terms >> k & 1) {
+            imki_text_add(text, "%s%s", between, names[k]);
+            between = ", ";
+        }
+}
+
+static bool find_ambiguous(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    if (!r->ambiguous || log->settings.summarise)
+        return false;
+    add_terms(detail, r->ambiguous);
+    imki_text_put(detail, r->instead ? " or " : " or none");
+    add_terms(detail, r->instead);
+    return true;
+}
+
+/* Rounding an angle makes white noise of it only where the noise of one sample moves it by about
+ * half a step. */
+static bool find_angle_noise(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    const double step = sqrt(12) * r->term[IMK_NOISE_QUANTIZATION].value;
+    const double moved = r->term[IMK_NOISE_WHITE].value * sqrt(log->record.dt);
+    const bool rounded = fabs(r->resolution * log->record.dt - step) < 0.2 * step;
+    (void)detail;
+    return step > 2.1 * moved && !rounded;
+}
+
+static bool find_undetermined(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    static const char *const names[] = {"quantization", "white noise"};
+    const imk_log_column *column = imk_even_record_column(&log->record, channel);
+    for (int term = IMK_NOISE_QUANTIZATION; term <= IMK_NOISE_WHITE; term++) {
+        const imk_estimate *e = &log->result[channel].term[term];
+        const imk_unit unit = imk_channel_term(column, (imk_noise_term)term).unit;
+        if (e->present && !(e->upper <= 9 * e->lower))
+            imki_text_add(detail, "%s%s %.2g to %.2g %s", detail->size > 0 ? ", " : "", names[term],
+                          e->lower / unit.scale, e->upper / unit.scale, unit.text);
+    }
+    return true;
+}
+
 static bool find_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_low_pass filter = log->result[channel].filter;
@@ -292,8 +342,12 @@ static const struct concern {
      "longer",
      NULL},
     {IMK_VERDICT_COARSE, find_resolution, 0, IMK_FINDING_WARNING, "coarse",
-     "the output step is larger than the noise, so the white noise is unreliable; log with more "
-     "digits or a smaller range",
+     "the output step is so large against the noise that rounding errors are not white, so white "
+     "noise and quantization are unreliable; log with more digits or a smaller range",
+     NULL},
+    {IMK_VERDICT_UNDETERMINED, find_undetermined, 0, IMK_FINDING_WARNING, "undetermined",
+     "filter, resonances or other terms can take the place of this term, so its value is hardly "
+     "known; use the interval, or log faster or for longer",
      NULL},
     {IMK_VERDICT_SATURATED, NULL, 0, IMK_FINDING_WARNING, "saturated",
      "samples stick at an extreme value: the range is too small or the sensor was moved", NULL},
@@ -313,9 +367,21 @@ static const struct concern {
      "spectral lines, from vibration or interference, are modelled separately as sinusoids", NULL},
     {IMK_VERDICT_RESONANCE, find_resonance, 0, IMK_FINDING_NOTE, "resonance",
      "a resonance of the structure or the sensor is modelled separately", NULL},
+    {0, find_angle_noise, 0, IMK_FINDING_NOTE, "angle_noise",
+     "the quantization is white noise of the angle, and the output is not rounded to such steps; "
+     "simulate rounds, so a twin has less noise at the shortest averaging times",
+     NULL},
+    {0, find_ambiguous, 0, IMK_FINDING_NOTE, "ambiguous",
+     "the record cannot tell which of these terms it holds; the intervals hold for either", NULL},
     {IMK_VERDICT_FILTERED, find_filter, 0, IMK_FINDING_NOTE, "filtered",
      "the output is low-pass filtered within the band; the filter is in the model", NULL},
 };
+
+/* What the estimate shows without screening the samples. */
+static bool is_of_estimate(assessment find)
+{
+    return find == find_missing || find == find_ambiguous || find == find_angle_noise;
+}
 
 /* The channels on which a condition holds, each with its details in parentheses. */
 static void assess_concern(imk_verdict *v, const imk_identify_log *log, const struct concern *about)
@@ -483,7 +549,7 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
         return v;
     assess_gravity(&v, log);
     for (size_t k = 0; k < sizeof concerns / sizeof concerns[0]; k++)
-        if (log->screened || concerns[k].bit || concerns[k].find == find_missing)
+        if (log->screened || concerns[k].bit || is_of_estimate(concerns[k].find))
             assess_concern(&v, log, &concerns[k]);
     imki_assess_vibration(&v, log);
     imki_verdict_noise_changes(&v, log);

@@ -1,0 +1,300 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Do the intervals hold where the verdict is clear? Mixtures of noise terms, resonances, output
+ * filters and rounding.
+ *
+ * usage: coverage_mixtures [records] [seed] [first case] [last case]
+ *
+ * Prints for each mixture the share of records without a doubt, and for each term how often it is
+ * reported present and how often its 95 % interval holds the truth: in all records, and in those
+ * without a doubt. A term that is not in the mixture holds when its interval reaches 0. Then what
+ * was reported that is not there. The flicker noise of cases with a star is made by fractional
+ * differences, not by the library. */
+#include "imukit/io.h"
+#include "noise_record.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { WORKERS = 2, SAMPLES = 1 << 16 };
+
+#define GM(sigma, time)                                                                            \
+    {                                                                                              \
+        sigma, time                                                                                \
+    }
+
+/* At 100 Hz: N = 1 has 10 in one sample, and 0.1 in the angle of one. */
+static const truth cases[] = {
+    {.name = "N", .term = {0, 1}},
+    {.name = "N B", .term = {0, 1, 1}},
+    {.name = "N B *", .term = {0, 1, 1}, .fractional = true},
+    {.name = "N B K", .term = {0, 1, 1, 0.3}},
+    {.name = "N B K *", .term = {0, 1, 1, 0.3}, .fractional = true},
+    {.name = "Q N B K", .term = {0.03, 1, 1, 0.3}},
+    {.name = "Q N R", .term = {0.03, 1, 0, 0, 0.01}},
+    {.name = "N R", .term = {0, 1, 0, 0, 0.002}},
+    {.name = "N B R", .term = {0, 1, 1, 0, 0.012}},
+    {.name = "N B R *", .term = {0, 1, 1, 0, 0.012}, .fractional = true},
+    {.name = "N GM 0.04", .term = {0, 1}, .gauss_markov = {GM(5, 0.04)}},
+    {.name = "N B GM 0.04", .term = {0, 1, 1}, .gauss_markov = {GM(5, 0.04)}},
+    {.name = "N GM 0.1", .term = {0, 1}, .gauss_markov = {GM(3, 0.1)}},
+    {.name = "N GM 1", .term = {0, 1}, .gauss_markov = {GM(1, 1)}},
+    {.name = "N GM 10", .term = {0, 1}, .gauss_markov = {GM(0.5, 10)}},
+    {.name = "N GM 100", .term = {0, 1}, .gauss_markov = {GM(0.3, 100)}},
+    {.name = "N B K GM 1", .term = {0, 1, 1, 0.1}, .gauss_markov = {GM(1, 1)}},
+    {.name = "N GM 1 GM 30", .term = {0, 1}, .gauss_markov = {GM(1, 1), GM(0.5, 30)}},
+    {.name = "N GM 1 K", .term = {0, 1, 0, 0.1}, .gauss_markov = {GM(1, 1)}},
+    {.name = "N B, resonance 20 Hz q 16", .term = {0, 1, 1}, .resonance = {{6, 20.3, 16}}},
+    {.name = "N B, resonance 20 Hz q 4", .term = {0, 1, 1}, .resonance = {{6, 20, 4}}},
+    {.name = "N B, resonance 5 Hz q 3", .term = {0, 1, 1}, .resonance = {{3, 5, 3}}},
+    {.name = "N B, weak resonance 12 Hz q 8", .term = {0, 1, 1}, .resonance = {{1.5, 12, 8}}},
+    {.name = "N B, 2 resonances", .term = {0, 1, 1}, .resonance = {{4, 12, 8}, {5, 30, 5}}},
+    {.name = "N B, 3 resonances",
+     .term = {0, 1, 1},
+     .resonance = {{4, 8, 10}, {5, 20, 6}, {6, 35, 12}}},
+    {.name = "N B, filter 61 Hz", .term = {0, 1, 1}, .filter = {61, 0}},
+    {.name = "N B, filter 20 Hz", .term = {0, 1, 1}, .filter = {20, 0}},
+    {.name = "N B, filter 5 Hz", .term = {0, 1, 1}, .filter = {5, 0}},
+    {.name = "N B, filter 40 Hz 0.7", .term = {0, 1, 1}, .filter = {40, 0.7}},
+    {.name = "N B, filter 10 Hz 0.7", .term = {0, 1, 1}, .filter = {10, 0.7}},
+    {.name = "N B, filter 20 Hz, resonance",
+     .term = {0, 1, 1},
+     .filter = {20, 0},
+     .resonance = {{6, 20, 8}}},
+    {.name = "rounded 1", .term = {0, 1, 1}, .step = 10, .mean = 3},
+    {.name = "rounded 1.5", .term = {0, 1, 1}, .step = 15, .mean = 4},
+    {.name = "rounded 2", .term = {0, 1, 1}, .step = 20, .mean = 6},
+    {.name = "rounded 2.25", .term = {0, 1, 1}, .step = 22.5, .mean = 7},
+    {.name = "rounded 2.5", .term = {0, 1, 1}, .step = 25, .mean = 8},
+    {.name = "rounded 3", .term = {0, 1, 1}, .step = 30, .mean = 10},
+    {.name = "rounded 5", .term = {0, 1, 1}, .step = 50, .mean = 15},
+    {.name = "rounded 10", .term = {0, 1, 1}, .step = 100, .mean = 45},
+    {.name = "rounded 0.5, filter 5 Hz", .term = {0, 1, 1}, .filter = {5, 0}, .step = 2, .mean = 1},
+    {.name = "rounded 1, filter 5 Hz", .term = {0, 1, 1}, .filter = {5, 0}, .step = 4, .mean = 1},
+    {.name = "rounded 2, filter 5 Hz", .term = {0, 1, 1}, .filter = {5, 0}, .step = 8, .mean = 1},
+    {.name = "rounded 4, K", .term = {0, 1, 0, 10}, .step = 40},
+    {.name = "angle rounded 0.3", .term = {0, 1, 1}, .angle_step = 0.03, .mean = 2},
+    {.name = "angle rounded 1", .term = {0, 1, 1}, .angle_step = 0.1, .mean = 2},
+    {.name = "angle rounded 2", .term = {0, 1, 1}, .angle_step = 0.2, .mean = 2},
+    {.name = "angle rounded 2.25", .term = {0, 1, 1}, .angle_step = 0.225, .mean = 2},
+    {.name = "angle rounded 2.5", .term = {0, 1, 1}, .angle_step = 0.25, .mean = 2},
+    {.name = "angle rounded 3", .term = {0, 1, 1}, .angle_step = 0.3, .mean = 2},
+    {.name = "angle rounded 5", .term = {0, 1, 1}, .angle_step = 0.5, .mean = 2},
+    {.name = "angle rounded 10", .term = {0, 1, 1}, .angle_step = 1, .mean = 2},
+    {.name = "angle rounded 30", .term = {0, 1, 1}, .angle_step = 3, .mean = 2},
+    {.name = "angle rounded 2, mean 0", .term = {0, 1, 1}, .angle_step = 0.2},
+    {.name = "angle rounded 3, mean 0", .term = {0, 1, 1}, .angle_step = 0.3},
+    {.name = "angle rounded 2, fast", .term = {0, 1, 1}, .angle_step = 0.2, .mean = 137},
+};
+enum { CASES = sizeof cases / sizeof cases[0] };
+
+static const char *const kinds[] = {"Q", "N", "B", "K", "R", "GM", "line", "resonance", "filter"};
+enum { GAUSS_MARKOV = IMK_NOISE_TERMS, LINE, RESONANCE, FILTER, KINDS };
+
+typedef struct experiment {
+    truth t;
+    uint64_t seed;
+    size_t records;
+    double *samples[WORKERS];
+    void *workspace[WORKERS];
+    size_t workspace_size;
+    imk_identification *results;
+} experiment;
+
+static void worker(void *context, size_t index)
+{
+    experiment *e = context;
+    imk_identify_settings settings = imk_identify_default();
+    settings.dt = 1 / e->t.rate;
+    for (size_t record = index; record < e->records; record += WORKERS) {
+        make_record(&e->t, e->seed, record, e->samples[index]);
+        memset(&e->results[record], 0, sizeof e->results[record]);
+        const imk_status status =
+            imk_identify_channel(&settings, e->t.samples, e->samples[index], &e->results[record],
+                                 e->workspace[index], e->workspace_size, NULL);
+        e->results[record].rounds = status == IMK_OK ? 0 : -1;
+    }
+}
+
+/* Without a warning of `identify`. */
+static bool is_clear(const imk_identification *r)
+{
+    const unsigned notes = IMK_VERDICT_LINES | IMK_VERDICT_RESONANCE | IMK_VERDICT_FILTERED;
+    return r->rounds == 0 && !(r->verdict & ~notes);
+}
+
+static const imk_estimate absent = {.present = false};
+
+/* The term of a record that stands for a true one: of Gauss-Markov terms the nearest in log T. */
+static const imk_estimate *find(const truth *t, const imk_identification *r, int which, bool time)
+{
+    if (which < IMK_NOISE_TERMS)
+        return &r->term[which];
+    const double wanted = log(t->gauss_markov[which - IMK_NOISE_TERMS].correlation_time);
+    int best = -1;
+    double least = HUGE_VAL;
+    for (int i = 0; i < r->gauss_markov_count; i++) {
+        const double off = fabs(log(r->gauss_markov[i].correlation_time.value) - wanted);
+        best = off < least ? i : best;
+        least = fmin(least, off);
+    }
+    return best < 0 ? &absent
+           : time   ? &r->gauss_markov[best].correlation_time
+                    : &r->gauss_markov[best].sigma;
+}
+
+static void print_term(const experiment *e, const char *name, double value, int which, bool time)
+{
+    size_t found = 0, covered = 0, clear = 0, clear_covered = 0, wide = 0;
+    double sum = 0;
+    for (size_t i = 0; i < e->records; i++) {
+        const imk_identification *r = &e->results[i];
+        const imk_estimate *estimate = find(&e->t, r, which, time);
+        const bool holds = estimate->lower <= value && value <= estimate->upper;
+        found += estimate->present;
+        covered += holds;
+        clear += is_clear(r);
+        clear_covered += is_clear(r) && holds;
+        wide += is_clear(r) && estimate->present && estimate->upper > 9 * estimate->lower;
+        sum += estimate->free_value;
+    }
+    const double n = (double)e->records;
+    printf("    %-2s present %5.1f %%  holds %5.1f %%", name, 100 * (double)found / n,
+           100 * (double)covered / n);
+    if (clear > 0)
+        printf("  clear %5.1f %%", 100 * (double)clear_covered / (double)clear);
+    if (wide > 0)
+        printf("  wide %.1f %%", 100 * (double)wide / n);
+    if (value > 0)
+        printf("  mean/true %.4f", sum / n / value);
+    printf("\n");
+}
+
+static int found_of(const imk_identification *r, int kind)
+{
+    return kind < IMK_NOISE_TERMS ? r->term[kind].present
+           : kind == GAUSS_MARKOV ? r->gauss_markov_count
+           : kind == LINE         ? r->sinusoid_count
+           : kind == RESONANCE    ? r->resonance_count
+                                  : r->filter.bandwidth > 0;
+}
+
+static double white_of(const truth *t)
+{
+    const double n = t->term[IMK_NOISE_WHITE];
+    const double step = t->filter.bandwidth > 0 ? 0 : t->step; /* rounded after the filter */
+    return sqrt(n * n + step * step / 12 / t->rate);
+}
+
+static void print_verdicts(const experiment *e)
+{
+    static const char *const names[] = {"short",   "coarse",    "lines",  "resonance", "filtered",
+                                        "warm-up", "saturated", "misfit", "frozen"};
+    size_t wide = 0;
+    for (size_t i = 0; i < e->records; i++)
+        wide += (e->results[i].verdict & IMK_VERDICT_UNDETERMINED) > 0;
+    if (wide > 0)
+        printf("  undetermined %.1f", 100 * (double)wide / (double)e->records);
+    for (unsigned bit = 0; bit < 9; bit++) {
+        size_t count = 0;
+        for (size_t i = 0; i < e->records; i++)
+            count += e->results[i].verdict >> bit & 1;
+        if (count > 0 && bit != 2 && bit != 3 && bit != 4)
+            printf("  %s %.1f", names[bit], 100 * (double)count / (double)e->records);
+    }
+}
+
+/* Terms of a kind that are reported without an alternative. */
+static int certain_of(const imk_identification *r, int kind)
+{
+    if (kind < IMK_NOISE_TERMS)
+        return r->term[kind].present && !(r->ambiguous >> kind & 1);
+    int count = 0;
+    for (int i = 0; i < r->gauss_markov_count; i++)
+        count += r->gauss_markov[i].sigma.lower > 0;
+    return count;
+}
+
+static void print_false(const experiment *e)
+{
+    int held[KINDS] = {0};
+    for (int i = 0; i < IMK_NOISE_TERMS; i++)
+        held[i] = e->t.term[i] != 0;
+    held[IMK_NOISE_QUANTIZATION] += e->t.angle_step > 0;
+    for (int i = 0; i < TIMES; i++)
+        held[GAUSS_MARKOV] += e->t.gauss_markov[i].sigma > 0;
+    for (int i = 0; i < RESONANCES; i++)
+        held[RESONANCE] += e->t.resonance[i].sigma > 0;
+    held[FILTER] = e->t.filter.bandwidth > 0;
+    printf("    false:");
+    for (int kind = 0; kind < KINDS; kind++) {
+        size_t more = 0, less = 0, certain = 0;
+        for (size_t i = 0; i < e->records; i++) {
+            more += found_of(&e->results[i], kind) > held[kind];
+            certain += kind <= GAUSS_MARKOV && certain_of(&e->results[i], kind) > held[kind];
+            less += found_of(&e->results[i], kind) < held[kind];
+        }
+        if (more > 0)
+            printf("  %s %.1f", kinds[kind], 100 * (double)more / (double)e->records);
+        if (more > 0 && kind <= GAUSS_MARKOV)
+            printf(" (certain %.1f)", 100 * (double)certain / (double)e->records);
+        if (less > 0 && kind > IMK_NOISE_TERMS)
+            printf("  missed %s %.1f", kinds[kind], 100 * (double)less / (double)e->records);
+    }
+    printf("\n");
+}
+
+static void print_case(const experiment *e)
+{
+    const truth *t = &e->t;
+    size_t clear = 0;
+    for (size_t i = 0; i < e->records; i++)
+        clear += is_clear(&e->results[i]);
+    printf("%s: clear %.1f %%", t->name, 100 * (double)clear / (double)e->records);
+    print_verdicts(e);
+    printf("\n");
+    for (int i = 0; i < IMK_NOISE_TERMS; i++) {
+        double value = i == IMK_NOISE_WHITE ? white_of(t) : t->term[i];
+        if (i == IMK_NOISE_QUANTIZATION && t->angle_step > 0)
+            value = t->angle_step / sqrt(12);
+        print_term(e, kinds[i], value, i, false);
+    }
+    for (int i = 0; i < TIMES; i++)
+        if (t->gauss_markov[i].sigma > 0) {
+            print_term(e, "GM", t->gauss_markov[i].sigma, IMK_NOISE_TERMS + i, false);
+            print_term(e, "T", t->gauss_markov[i].correlation_time, IMK_NOISE_TERMS + i, true);
+        }
+    print_false(e);
+    fflush(stdout);
+}
+
+int main(int argc, char **argv)
+{
+    const size_t records = argc > 1 ? strtoul(argv[1], NULL, 10) : 100;
+    const uint64_t seed = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
+    const size_t first = argc > 3 ? strtoul(argv[3], NULL, 10) : 0;
+    const size_t last = argc > 4 ? strtoul(argv[4], NULL, 10) : CASES - 1;
+    imk_thread_pool *pool = imk_thread_pool_create(WORKERS);
+    const imk_executor executor = imk_thread_pool_executor(pool);
+    experiment e = {.seed = seed,
+                    .records = records,
+                    .workspace_size = imk_identify_workspace_size(SAMPLES),
+                    .results = malloc(records * sizeof(imk_identification))};
+    for (size_t i = 0; i < WORKERS; i++) {
+        e.samples[i] = malloc(SAMPLES * sizeof(double));
+        e.workspace[i] = malloc(e.workspace_size);
+    }
+    for (size_t i = first; i <= last && i < CASES; i++) {
+        e.t = cases[i];
+        e.t.samples = SAMPLES;
+        e.t.rate = 100;
+        imk_execute(&executor, WORKERS, worker, &e);
+        print_case(&e);
+    }
+    for (size_t i = 0; i < WORKERS; i++) {
+        free(e.samples[i]);
+        free(e.workspace[i]);
+    }
+    free(e.results);
+    imk_thread_pool_destroy(pool);
+    return 0;
+}

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Ends of an interval by profile likelihood: the parameter is held, everything else fitted again.
+ */
+#include "identify_internal.h"
+
+#include <math.h>
+
+/* Signed root of twice the fall of the likelihood, less what it is at the interval's end: nearly
+ * linear in the place. The fit is left at the place, so that the next one starts from there. */
+double imki_interval_beyond(const imki_interval_profile *p, double place)
+{
+    if (p->held_time >= 0) {
+        const size_t term = (size_t)p->held_time;
+        p->fit->correlation_time[term] = exp(place);
+        imki_gauss_markov_shape(p->fit, p->bands, exp(place),
+                                p->fit->shape[IMKI_FIRST_GAUSS_MARKOV + term]);
+    } else if (p->held == IMKI_HELD_RAMP) {
+        p->fit->ramp = place;
+    } else {
+        p->fit->amount[p->held] = place * place;
+    }
+    const double fall =
+        p->best.log_likelihood - imki_gauss_markov_settle(p->fit, p->bands, p->held, p->held_time);
+    return sqrt(fmax(0, 2 * fall)) - sqrt(2 * p->drop);
+}
+
+/* End of the interval in the direction of `step`, at most at `limit`: bracketed by growing steps,
+ * then by regula falsi, the value of an end that stays halved [DOWELL1971]. */
+double imki_interval_end(const imki_interval_profile *p, double start, double step, double limit)
+{
+    double inside = start, outside = start, at_inside = -sqrt(2 * p->drop), at_outside = 0;
+    imki_fit_restore(p->fit, p->bands, &p->best);
+    for (int i = 0; i < 60; i++) {
+        outside = step > 0 ? fmin(outside + step, limit) : fmax(outside + step, limit);
+        at_outside = imki_interval_beyond(p, outside);
+        if (at_outside > 0)
+            break;
+        if (outside == limit)
+            return limit;
+        inside = outside;
+        at_inside = at_outside;
+        step *= at_inside < -0.8 * sqrt(2 * p->drop) ? 4 : 1.5;
+    }
+    for (int i = 0, side = 0; i < 30 && fabs(outside - inside) > 1e-4 * fabs(outside - start);
+         i++) {
+        double place = inside - at_inside * (outside - inside) / (at_outside - at_inside);
+        if (!(fabs(place - inside) < fabs(outside - inside)))
+            place = 0.5 * (inside + outside);
+        const double at = imki_interval_beyond(p, place);
+        if (fabs(at) < 1e-4)
+            return place;
+        if (at > 0) {
+            outside = place;
+            at_outside = at;
+            at_inside *= side > 0 ? 0.5 : 1;
+            side = 1;
+        } else {
+            inside = place;
+            at_inside = at;
+            at_outside *= side < 0 ? 0.5 : 1;
+            side = -1;
+        }
+    }
+    return 0.5 * (inside + outside);
+}
+
+/* Bartlett's factor of the likelihood ratio [BARTLETT1937]: for a variance estimated with v degrees
+ * of freedom its mean is v [log(v/2) - digamma(v/2)] ~ 1 + 1/(3v), not 1. Here v = 2 (amount/sd)^2,
+ * at least 2. */
+static double small_sample_factor(double amount, double sd)
+{
+    const double degrees = 2 * (amount / sd) * (amount / sd);
+    return 1 + 1 / (3 * (degrees > 2 ? degrees : 2));
+}
+
+/* Centre of the interval of a strength or of the ramp at the fit, and a first step from it; allows
+ * for a strength known from few coefficients in the drop. */
+imki_interval_profile imki_interval_profile_at(const imki_work *w, int held, double drop,
+                                               double *centre, double *step)
+{
+    const imki_fit *fit = w->fit;
+    imki_interval_profile p = {w->fit, w->bands, held, IMKI_HELD_NONE, imki_fit_keep(w->fit), drop};
+    if (held == IMKI_HELD_RAMP) {
+        *step = 1 / sqrt(imki_fit_ramp_information(fit, w->bands));
+        *centre = fit->ramp;
+        return p;
+    }
+    double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
+    imki_fit_covariance(w->fit, w->bands, covariance);
+    const double sd = sqrt(covariance[(size_t)held * fit->templates + (size_t)held]);
+    *centre = sqrt(fit->amount[held]);
+    p.drop *= small_sample_factor(fit->amount[held], sd);
+    *step = 2 * (sqrt(fit->amount[held] + sd) - *centre); /* near the end of 95 % */
+    return p;
+}
