@@ -134,9 +134,11 @@ void imki_verdict_noise_changes(imk_verdict *v, const imk_identify_log *log)
          "holds, and its interval allows for the tails."}};
     for (int about = 0; about < SUBJECTS; about++) {
         imki_text list = {.bytes = NULL};
+        uint64_t channels = 0;
         for (size_t c = 0; c < log->record.count; c++) {
             if (!log->map[c] || !applies(&log->changes[c], (subject)about))
                 continue;
+            channels |= (uint64_t)1 << c;
             imki_text_add(&list, "%s%s (", list.size > 0 ? ", " : "",
                           imk_even_record_column(&log->record, c)->name);
             put_detail(log, c, (subject)about, &list);
@@ -144,6 +146,8 @@ void imki_verdict_noise_changes(imk_verdict *v, const imk_identify_log *log)
         }
         imki_verdict_list(v, messages[about].level, messages[about].code, "", &list,
                           messages[about].text);
+        if (channels)
+            imki_verdict_about(v, &log->record, channels);
     }
 }
 
