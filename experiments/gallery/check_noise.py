@@ -82,17 +82,30 @@ def check_sessions():
     check("session: vertical carried by the rates [rad]", tilt, 0, turned * 1.01)
 
 
+def white_at_the_end(kind):
+    """Density of the white noise at half the sampling rate, of that at 0."""
+    if not kind.sensor.low_pass:
+        return 1
+    bandwidth, damping = kind.sensor.low_pass
+    falls = kind.rate / 2 / bandwidth
+    return 0.4 / (1 + falls ** (4 if damping else 2))
+
+
 def check_sound():
-    """At half the sampling rate the shape of the flicker noise is a matter of definition: this must
-    move N by less than a half-width in every kind."""
+    """At half the sampling rate the flicker noise is a matter of definition, by a half. This must
+    move N by less than a third of its half-width, and flicker noise must not show there behind a
+    filter, where B would follow from it."""
     check("sound kinds", len(sound.KINDS), 60, 0)
-    shares = {}
+    shares, shows = {}, {}
     for kind in sound.KINDS:
         flicker = kind.sensor.b ** 2 / (np.pi * kind.rate)  # of N's density
         half_width = 1.96 / np.sqrt(2 * kind.rate * kind.seconds)
         shares[kind.name] = 0.06 * flicker / half_width
+        shows[kind.name] = flicker / white_at_the_end(kind)
     worst = max(shares, key=shares.get)
     check(f"shape of the flicker noise, {worst}", shares[worst], 0, 0.3)
+    worst = max(shows, key=shows.get)
+    check(f"flicker noise of white at the end, {worst}", shows[worst], 0, 0.05)
 
 
 check_noise()

@@ -3,7 +3,7 @@
 
 Strengths are relative to a white noise of 1 and scaled to a gyro of 0.3 deg/sqrt(h) or an
 accelerometer of 0.05 m/s/sqrt(h). A record holds its flicker noise to 5 to 15 %. At half the
-sampling rate the flicker noise is too weak for its shape there to matter to N.
+sampling rate the flicker noise is too weak for its shape there to matter, also behind a filter.
 """
 from dataclasses import dataclass, field
 
@@ -100,10 +100,10 @@ KINDS = [
          Sensor(b=0.45, low_pass=(20, 0)), "g1"),
     Kind("low_pass_2", "second-order output filter, 40 Hz of 100", 100, 1800,
          Sensor(b=0.45, low_pass=(40, 0.7))),
-    Kind("low_pass_200", "second-order output filter, 25 Hz of 200", 200, 900,
-         Sensor(b=0.6, low_pass=(25, 0.7)), "g1"),
-    Kind("low_pass_1khz", "second-order output filter, 100 Hz of 1000", 1000, 200,
-         Sensor(b=1, low_pass=(100, 0.6)), "g1"),
+    Kind("low_pass_200", "second-order output filter, 50 Hz of 200", 200, 900,
+         Sensor(b=0.6, low_pass=(50, 0.7)), "g1"),
+    Kind("low_pass_1khz", "second-order output filter, 250 Hz of 1000", 1000, 200,
+         Sensor(b=1, low_pass=(250, 0.6)), "g1"),
     Kind("resonance_20hz", "resonance at 20 Hz, quality 16", 100, 1800,
          Sensor(b=0.45, resonances=((0.6, 20, 16),))),
     Kind("resonance_3hz", "resonance at 3 Hz, quality 16", 20, 7200,

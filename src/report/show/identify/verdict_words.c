@@ -32,7 +32,6 @@ static const struct words {
      "Many samples far off, kept as noise: %s."},
     {"undetermined", "a term of %s can take the place of another",
      "Terms that can replace each other: %s."},
-    {"gravity", "the accelerometers do not read gravity", NULL},
     {"unordered", "rows whose time does not increase are left out", NULL},
     {"runs_differ", "the logs do not have the same noise", NULL},
     {"outliers", NULL, "Outliers, left out: %s."},
