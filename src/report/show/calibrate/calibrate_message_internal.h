@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A message of the verdict of a calibration, made of its parts. */
+#ifndef IMUKI_CALIBRATE_MESSAGE_INTERNAL_H
+#define IMUKI_CALIBRATE_MESSAGE_INTERNAL_H
+
+#include "calibrate_show_internal.h"
+
+typedef struct imki_calibrate_message {
+    imk_finding_level level;
+    const char *code;
+    char text[1200];
+} imki_calibrate_message;
+
+/* calibrate_log_text.c */
+imki_calibrate_message imki_calibrate_say(imk_finding_level level, const char *code,
+                                          const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* A diagnostic of a log: what was found, what is expected, what mends it. */
+imki_calibrate_message imki_message_on_log(const imk_calibrate_log *b,
+                                           const imk_calibrate_record *log,
+                                           const imk_diagnostic_finding *d);
+
+#endif
