@@ -118,11 +118,10 @@ typedef struct imk_calibration {
                                                log corrects it: where it leaves 3 degrees of freedom
                                                or more, all such priors are multiplied by the factor
                                                that the estimates show */
-    bool hidden[IMK_CORRELATED_MAX]; /**< with a prior: the parameter's uncertainty is part of the
-                                        others', but it is neither reported nor changed in the model
-                                        */
-    imk_triad_frame frame;           /**< IMK_FRAME_UPPER by default */
-    double gravity;                  /**< local gravity [m/s^2] */
+    bool hidden[IMK_CORRELATED_MAX];        /**< with a prior: the parameter is part of the others'
+                                               uncertainty, but neither reported nor changed */
+    imk_triad_frame frame;                  /**< IMK_FRAME_UPPER by default */
+    double gravity;                         /**< local gravity [m/s^2] */
     double latitude;   /**< geodetic [rad], for the Earth's rotation; NaN: not known; the sigma of
                           gyro readings at rest then includes the unknown rotation */
     double earth_rate; /**< default 7.292115e-5 rad/s; 0: the references contain no Earth rate, and

@@ -56,7 +56,7 @@ IMK_API imk_status imk_evaluate_table(imk_evaluate_log *evaluation, const imk_lo
                                       imk_error *error);
 /** Add the readings of a record of a test with a reference: the mean of every stretch in which the
  *  reference is constant. A delay of the reference is taken out, with a finding when it exceeds
- * what is trimmed from each stretch.
+ *  what is trimmed.
  *  @param record  from imk_calibrate_record_load()
  *  @return with a finding in evaluation->findings, IMK_ERROR_KEY_MISSING (no reference), _EMPTY
  *          (no reference changes, or none stays constant), _DIMENSION, _RANGE; errors of
