@@ -37,8 +37,10 @@ typedef struct imk_even_record {
 } imk_even_record;
 
 /** Read a whole source and make its channels equally spaced. Channels are gyros and accelerometers;
- *  if there are none, every other column. Numbers beyond IMK_READING_MAX count as missing. Free the
- *  record with imk_even_record_free(), also after an error.
+ *  if there are none, every other column. Numbers beyond IMK_READING_MAX count as missing. Stamps
+ *  that are coarse, late or of a clock that jumps are replaced by even times of the rows in their
+ *  order (docs/theory/gaps.md); samples of a sensor slower than the log are told. Free the record
+ *  with imk_even_record_free(), also after an error.
  *  @return errors of the source; IMK_ERROR_MEMORY, _CANCELLED; with a finding that says why: _EMPTY
  *          (no row), _COLUMN (no channel), _TOO_SHORT, _RATE_MISSING, _TIME_ORDER (the times are
  *          not equally spaced), _GAP (refused) */

@@ -26,8 +26,8 @@ typedef struct imki_grid {
 /* How many places further the next row is; 0: it is left out. What is missing is counted. */
 size_t imki_grid_step(imki_grid *grid, double time, imk_even_record *record);
 
-/* Scatter of the steps, as a share of the interval, that is told. */
-extern const double imki_jitter_told;
+/* Scatter of the steps that is told [% of the interval]. */
+enum { IMKI_JITTER_TOLD = 5 };
 
 /* Refuse, or tell of, times that scatter: record->log.findings against record->dt. */
 imk_status imki_grid_jitter(const imk_even_record *record, imk_findings *findings,

@@ -13,8 +13,7 @@
 /* Scatter of the steps, as a share of the interval: beyond the first the record is said to be
  * jittered, beyond the second its times are no grid. Uniform scatter of one interval's width is
  * 0.29, its difference of neighbours 0.41. */
-const double imki_jitter_told = 0.05;
-static const double jitter_most = 0.3;
+static const double jitter_told = 0.01 * IMKI_JITTER_TOLD, jitter_most = 0.3;
 
 /* More empty places than this for every row are a jump of the clock, not missing samples. */
 enum { EMPTY_MOST = 20, EMPTY_ALLOWED = 1000 };
@@ -124,7 +123,7 @@ imk_status imki_grid_jitter(const imk_even_record *record, imk_findings *finding
     if (share > jitter_most)
         return imki_fail(findings, error, IMK_ERROR_TIME_ORDER, "no_grid", NULL,
                          IMKI_NUMBERS(100 * share, record->dt));
-    if (share > imki_jitter_told)
+    if (share > jitter_told)
         imki_find(findings, IMK_FINDING_WARNING, "jitter", NULL, IMKI_NUMBERS(100 * share));
     return IMK_OK;
 }

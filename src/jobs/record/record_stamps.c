@@ -239,7 +239,7 @@ static void tell(const choice *c, double jitter, const imki_stamps *s, imk_findi
     const double expected = grouped ? 1.5 * v->most_rows_per_stamp : 0;
     if (grouped)
         tell_groups(c, s->repeated, s->rows, findings);
-    if (!grouped && r->latest <= expected + late_told && jitter > imki_jitter_told)
+    if (!grouped && r->latest <= expected + late_told && 100 * jitter > IMKI_JITTER_TOLD)
         imki_find(findings, IMK_FINDING_WARNING, "jitter", NULL, IMKI_NUMBERS(100 * jitter));
     const bool many = (double)r->late > few_rows * (double)s->rows;
     if (r->late > 0 && r->latest > expected + late_told)

@@ -26,8 +26,8 @@ static void swap(double *a, double *b)
     *b = held;
 }
 
-/* Lower median for even counts: a step that did occur. Reorders the values: quickselect, with the
- * middle as pivot, so that sorted and equal values are fast. */
+/* Lower median for even counts: a step that did occur. Reorders the values: quickselect
+ * [HOARE1961], with the middle as pivot, so that sorted and equal values are fast. */
 static double median_of(double *values, size_t count)
 {
     const size_t middle = (count - 1) / 2;

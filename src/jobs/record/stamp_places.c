@@ -22,7 +22,7 @@ enum { CATCH_UP = 4, END_ROWS = 8 };
 static const double step_back = 0.5, counted_most = 2.0, counted_lost = 3.0;
 
 /* A delay at the end is one of the usual ones up to this multiple of the longest. */
-static const double usual_most = 2.0;
+static const double usual_most = 1.3;
 
 /* A loss that is so far from a whole number of rows is none of rows alone. */
 static const double odd_rest = 0.25;
@@ -95,8 +95,7 @@ static void assess_delay(places *p, size_t i, double e)
     const size_t rows = r->window + (size_t)fmin(CATCH_UP * e, (double)p->n);
     const double stays = least_ahead(p, i, rows, &at);
     /* At the end there may be no time to make it up. */
-    const bool too_soon =
-        (double)(p->n - i) < END_ROWS + 2.0 * e && e < usual_most * fmax(1.0, r->latest);
+    const bool too_soon = (double)(p->n - i) < END_ROWS + 2.0 * e && e < usual_most * r->latest;
     if (!(stays > r->threshold && isfinite(stays)) || too_soon) {
         p->trusted = at;
         return;
