@@ -38,7 +38,7 @@ static imk_status check(const imk_noise_changes_settings *s, imk_error *error)
 static bool beats_slowly(const imk_noise_map *map, double cycles, double step)
 {
     const double turns = 2 * cycles * step;
-    return fabs(turns - floor(turns + 0.5)) * (double)map->block / step < 4;
+    return fabs(turns - floor(turns + 0.5)) * (double)map->block / step < 1.5;
 }
 
 /* Is a part of an octave a tone, or a resonance as narrow as one, whose beats would look like
