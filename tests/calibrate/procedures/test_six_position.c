@@ -25,14 +25,14 @@ static void test_labels(void **state)
                  {"pose -y", IMKI_LABEL_HOLD, 1, -1},
                  {"z-", IMKI_LABEL_HOLD, 2, -1},
                  {"x-up", IMKI_LABEL_HOLD, 0, 1},
-                 {"acc-x", IMKI_LABEL_HOLD, 0, 0},
+                 {"acc-x", IMKI_LABEL_HOLD, 0, 0, 0},
                  {"y+ face", IMKI_LABEL_HOLD, 1, 1},
                  {"y", IMKI_LABEL_HOLD, 1, 0},
                  {"pose 3", IMKI_LABEL_HOLD, -1, 0},
                  {"", IMKI_LABEL_HOLD, -1, 0},
                  {"up", IMKI_LABEL_HOLD, -1, 0},
                  {"hold a", IMKI_LABEL_HOLD, -1, 0},
-                 {"x_rot", IMKI_LABEL_TURN, 0, 0},
+                 {"x_rot", IMKI_LABEL_TURN, 0, 0, 0},
                  {"turn z neg", IMKI_LABEL_TURN, 2, -1},
                  {"Rotation", IMKI_LABEL_TURN, -1, 0},
                  {"x to y", IMKI_LABEL_OTHER, 1, 0},
@@ -64,7 +64,7 @@ static void test_rounding(void **state)
 /* ---- holds and faces ---------------------------------------------------------------------------
  */
 
-static const session_plan twice = {2, 8, 0, 1.7e-3, 0, 0, 0};
+static const session_plan twice = {2, 8, 0, 1.7e-3, 0, 0, 0, 0};
 
 static imk_status look(session *b, bool known, imk_procedure_findings *findings, imk_error *error)
 {
@@ -356,14 +356,14 @@ static void test_coverage_unequal_axes(void **state)
 static void test_coverage_exact(void **state)
 {
     (void)state;
-    static const session_plan plan = {2, 8, 0, 0, 0, 0, 0};
+    static const session_plan plan = {2, 8, 0, 0, 0, 0, 0, 0};
     run_benches(&plan, IMK_PROCEDURE_SIXPOSITION, check_runs(60), 0, 1.8);
 }
 
 static void test_coverage_ferraris(void **state)
 {
     (void)state;
-    static const session_plan plan = {2, 8, 6, 1.7e-3, 0, 0, 0};
+    static const session_plan plan = {2, 8, 6, 1.7e-3, 0, 0, 0, 0};
     run_benches(&plan, IMK_PROCEDURE_FERRARIS, check_runs(60), 0, 1.8);
 }
 
@@ -373,7 +373,7 @@ static void test_coverage_ferraris(void **state)
 static void test_bad_holds_refused(void **state)
 {
     (void)state;
-    static const session_plan plan = {5, 8, 0, 1.7e-3, 0.1, 0, 0};
+    static const session_plan plan = {5, 8, 0, 1.7e-3, 0.1, 0, 0, 0};
     static coverage_count count;
     const uint32_t benches = check_runs(16);
     session *b = session_new();
@@ -395,7 +395,7 @@ static void test_bad_holds_refused(void **state)
 static void test_needed_holds_kept(void **state)
 {
     (void)state;
-    static const session_plan clean = {1, 8, 0, 0, 0, 0, 0}, spoilt = {1, 8, 0, 0, 0.34, 0, 0};
+    static const session_plan clean = {1, 8, 0, 0, 0, 0, 0, 0}, spoilt = {1, 8, 0, 0, 0.34, 0, 0, 0};
     session *b = session_new();
     imk_error error;
     for (uint32_t n = 30; n < 36; n++) {
