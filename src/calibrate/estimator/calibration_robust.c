@@ -164,8 +164,9 @@ static bool is_suspicious(imki_estimator *e, const limits *l)
     return suspicious;
 }
 
-/* Groups in which a few items may draw the fit to them, by the fit of all items. */
-static void find_drawn(imki_estimator *e, const imki_fit *all, bool drawn[IMK_GROUPS])
+/* Groups in which a few items may draw the fit to them, by what the fit of all items left. */
+static void find_drawn(imki_estimator *e, const double redundancy[IMK_GROUPS],
+                       bool drawn[IMK_GROUPS])
 {
     double rows[IMK_GROUPS] = {0.0};
     for (size_t item = 0; item < e->items; item++) {
@@ -174,7 +175,7 @@ static void find_drawn(imki_estimator *e, const imki_fit *all, bool drawn[IMK_GR
             rows[e->row[i].group] += 1.0;
     }
     for (int g = 0; g < IMK_GROUPS; g++)
-        drawn[g] = all->redundancy[g] < (1.0 - drawn_share) * rows[g];
+        drawn[g] = redundancy[g] < (1.0 - drawn_share) * rows[g];
 }
 
 /* Scales that a solution has left, by medians: the sum of count log scale^2. `far`: one of them, of
@@ -272,10 +273,10 @@ static imk_status try_half(imki_estimator *e, int trial)
     return status;
 }
 
-static imk_status find_majority(imki_estimator *e, const imki_fit *all)
+static imk_status find_majority(imki_estimator *e, const double redundancy[IMK_GROUPS])
 {
     bool far, drawn[IMK_GROUPS];
-    find_drawn(e, all, drawn);
+    find_drawn(e, redundancy, drawn);
     imk_status status = reweighted(e, 0);
     if (status != IMK_OK)
         return status;
@@ -493,11 +494,12 @@ imk_status imki_refuse_outliers(imki_estimator *e)
     status = imki_variance_factors(e, 0.01, &l.fit);
     if (status != IMK_OK)
         return status;
-    const imki_fit all = l.fit;
+    double redundancy[IMK_GROUPS]; /* of all items */
+    memcpy(redundancy, l.fit.redundancy, sizeof redundancy);
     (void)decide(e, &l);
     set_weights(e);
     keep_best(e);
-    status = find_majority(e, &all);
+    status = find_majority(e, redundancy);
     if (status == IMK_ERROR_SINGULAR) { /* no solution without the items in diagnostic */
         take_best(e);
         refuse_nothing(e);

@@ -241,32 +241,48 @@ static double freedom_of_factor(const imki_fit *fit, int g)
     return fit->freedom[g] / (whole * whole);
 }
 
-/* The variance of a parameter is a sum over the groups, Cov J_g^T J_g Cov; that of its estimate,
- * with shares v_g of groups of r_g degrees, has (sum v)^2/sum(v_g^2/r_g) degrees
- * [SATTERTHWAITE1946]. Groups whose factor was not estimated, and what is known before, count as
- * certain. */
-void imki_freedoms(imki_estimator *e, const imki_fit *fit, double *freedom)
+/* Sum over some parts, PARTS_AT_ONCE from `first`, of share^2/freedom of every parameter. Few at
+ * once: they live on the stack. */
+enum { PARTS_AT_ONCE = 7 };
+static void add_shares(imki_estimator *e, const imki_fit *fit, int first, double *sum)
 {
     double matrix[IMKI_ROWS_MAX * IMKI_ROWS_MAX];
-    double share[IMKI_PARTS][IMK_CORRELATED_MAX];
+    double share[PARTS_AT_ONCE][IMK_CORRELATED_MAX];
     double by_globals[IMKI_ROWS_MAX * IMKI_GLOBALS_MAX];
     memset(share, 0, sizeof share);
     for (size_t k = 0; k < imki_things(e); k++) {
         const int count = imki_rows_of(e, k);
         imki_rows_covariance(&e->normal, e->row, count, matrix, by_globals);
-        for (int i = 0; i < count; i++)
-            for (size_t p = 0; p < e->parameters; p++) {
+        for (int i = 0; i < count; i++) {
+            const int part = e->row[i].part - first;
+            for (size_t p = 0; part >= 0 && part < PARTS_AT_ONCE && p < e->parameters; p++) {
                 const double by = by_globals[(size_t)i * e->globals + p];
-                share[e->row[i].part][p] += e->row[i].share * by * by;
+                share[part][p] += e->row[i].share * by * by;
             }
+        }
+    }
+    for (int g = first; g < first + PARTS_AT_ONCE && g < IMKI_PARTS; g++)
+        for (size_t p = 0; fit->estimated[g] && p < e->parameters; p++)
+            sum[p] += share[g - first][p] * share[g - first][p] / freedom_of_factor(fit, g);
+}
+
+/* The variance of a parameter is a sum over the groups, Cov J_g^T J_g Cov; that of its estimate,
+ * with shares v_g of groups of r_g degrees, has (sum v)^2/sum(v_g^2/r_g) degrees
+ * [SATTERTHWAITE1946]. Parts whose factor was not estimated, and what is known before, count as
+ * certain. */
+void imki_freedoms(imki_estimator *e, const imki_fit *fit, double *freedom)
+{
+    double sum[IMK_CORRELATED_MAX] = {0.0};
+    for (int first = 0; first < IMKI_PARTS; first += PARTS_AT_ONCE) {
+        bool any = false;
+        for (int g = first; g < first + PARTS_AT_ONCE && g < IMKI_PARTS; g++)
+            any = any || fit->estimated[g];
+        if (any)
+            add_shares(e, fit, first, sum);
     }
     for (size_t p = 0; p < e->parameters; p++) {
         const double variance = e->normal.covariance[p * e->globals + p];
-        double sum = 0.0;
-        for (int g = 0; g < IMKI_PARTS; g++)
-            if (fit->estimated[g])
-                sum += share[g][p] * share[g][p] / freedom_of_factor(fit, g);
         freedom[p] =
-            sum > 1e-12 * variance * variance ? variance * variance / sum : (double)INFINITY;
+            sum[p] > 1e-12 * variance * variance ? variance * variance / sum[p] : (double)INFINITY;
     }
 }
