@@ -60,7 +60,8 @@ static const struct message {
     /* record_stamps.c, stamp_rates.c */
     {"stamps:coarse", "one stamp of the time column is that of {0.3g} rows on average: the rows "
                       "are counted, and the rate of the long run is {1.7g} Hz; a loss of a few "
-                      "rows within one stamp cannot be seen"},
+                      "rows within one stamp cannot be seen, nor whether these are rows of several "
+                      "sensors"},
     {"stamps:bunched", "the rows come in bunches of {0.3g} on average, stamped when they arrived: "
                        "they are counted, and the rate of the long run is {1.7g} Hz; if a bunch "
                        "is not of one sensor, choose its columns with --columns"},

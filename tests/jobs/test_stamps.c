@@ -399,6 +399,9 @@ static void check_told(const char *code, const fault *faults, double least, doub
             fail_msg("%s is not told, seed %d, %g and %g", code, (int)seed, faults[0].strength,
                      faults[0].make ? faults[1].strength : 0);
         assert_true(f->number[number] >= least && f->number[number] <= most);
+        assert_int_equal(findings.count, 1 + (find(&findings, "jitter") != NULL) +
+                                             (find(&findings, "stamps:late") != NULL) +
+                                             (find(&findings, "missing") != NULL));
         imk_even_record_free(&even);
     }
 }

@@ -71,8 +71,15 @@ void imk_log_forget_faults(imk_log *log)
     }
 }
 
+/* Held samples are seen in the rows as they are in the log. */
+static void count_repeats(const imk_even_record *record, imki_repeats *repeats)
+{
+    imki_repeats_start(repeats, record->count, record->column, record->log.column);
+    imki_repeats_add(repeats, record->log.rows, record->log.data);
+}
+
 static imk_status space(double rate, imk_gap_policy gaps, imk_even_record *record,
-                        imk_findings *findings, imk_error *error)
+                        imki_repeats *repeats, imk_findings *findings, imk_error *error)
 {
     const size_t before = findings->count;
     const imk_status settled = imki_settle_times(rate, &record->log, findings, error);
@@ -80,6 +87,7 @@ static imk_status space(double rate, imk_gap_policy gaps, imk_even_record *recor
         findings->count = before; /* a stretch of it may have a rate */
     else if (settled != IMK_OK)
         return settled;
+    count_repeats(record, repeats);
     record->rows = record->log.rows;
     record->dt = rate > 0 ? 1 / rate : record->log.findings.interval;
     if (record->rows == 0)
@@ -94,13 +102,6 @@ static imk_status space(double rate, imk_gap_policy gaps, imk_even_record *recor
                                  : imki_space_evenly(rate, gaps, record, findings, error);
 }
 
-/* Held samples are seen in the rows as they are in the log. */
-static void count_repeats(const imk_even_record *record, imki_repeats *repeats)
-{
-    imki_repeats_start(repeats, record->count, record->column, record->log.column);
-    imki_repeats_add(repeats, record->log.rows, record->log.data);
-}
-
 imk_status imk_even_record_load(const imk_record_source *source, imk_gap_policy gaps,
                                 const imk_job *job, imk_even_record *record, imk_findings *findings,
                                 imk_error *error)
@@ -112,8 +113,7 @@ imk_status imk_even_record_load(const imk_record_source *source, imk_gap_policy 
         return status;
     imk_even_record_choose(record);
     imk_log_forget_faults(&record->log);
-    count_repeats(record, &repeats);
-    status = space(source->rate, gaps, record, findings, error);
+    status = space(source->rate, gaps, record, &repeats, findings, error);
     if (status == IMK_OK)
         imki_repeats_tell(&repeats, record->dt, findings);
     return status;
