@@ -52,9 +52,8 @@ enum {
     IMK_VERDICT_FILTERED = 1 << 4,  /**< the output is low-pass filtered within the band */
     IMK_VERDICT_WARM_UP = 1 << 5,   /**< the start drifts differently from the rest */
     IMK_VERDICT_SATURATED = 1 << 6, /**< samples stick at an extreme value */
-    IMK_VERDICT_MISFIT =
-        1 << 7, /**< the model does not explain all tau (false alarms: less than one record in
-                   10000): see valid_from, valid_to */
+    IMK_VERDICT_MISFIT = 1 << 7,    /**< the model does not explain all tau (false alarms: less than
+                                       one record in 10000): see valid_from, valid_to */
     IMK_VERDICT_FROZEN =
         1 << 8, /**< long runs of one value: samples are repeated, and the true rate is lower */
     IMK_VERDICT_UNDETERMINED = 1 << 12 /**< white noise or quantization is present, but known to no
