@@ -66,6 +66,8 @@ static void test_refusals(void **state)
                   "missing; expected latitude, longitude, height, such as \"34.25 deg, 108.91 deg, "
                   "380 m\"\n" TRY("navigate"));
     check_message("$I navigate rest.csv " PLACE " --align 10s --rate 1e-5Hz", 1,
+                  "imukit navigate: warning: --rate says 1e-05 Hz, but the time column 10 Hz; "
+                  "--rate is used, and every result follows from it: check which one is right\n"
                   "imukit navigate: error: rest.csv: no sample falls into --align 10s: the rows "
                   "are 100000 s apart; align for longer, or correct --rate or the timestamps\n");
     check_message("$I navigate rest.csv --align 10s --position '95 deg, 10 deg, 0 m'", 2,
