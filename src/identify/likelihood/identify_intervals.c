@@ -87,6 +87,8 @@ static void widen_for_quantization(imki_work *w, double drop, imk_estimate *e)
     interval_at(w, IMK_NOISE_WHITE, fmin(left, drop), &too);
     e->lower = fmin(e->lower, too.lower);
     e->upper = fmax(e->upper, too.upper);
+    if (!(drop - ahead > 0.01 * drop))
+        return;
     const double weight = 1 / (1 + exp(-ahead));
     e->free_value = sqrt(weight * e->free_value * e->free_value +
                          (1 - weight) * too.free_value * too.free_value);
