@@ -67,7 +67,7 @@ static void test_refusals(void **state)
                   "380 m\"\n" TRY("navigate"));
     check_message(
         "$I navigate rest.csv " PLACE " --align 10s --rate 1e-5Hz", 1,
-        "imukit navigate: warning: --rate says 1e-05 Hz, but the time column 100 Hz; "
+        "imukit navigate: warning: --rate says 1e-05 Hz, but the time column 10 Hz; "
         "--rate is used, and every result follows from it: check which one is "
         "right\nimukit navigate: error: rest.csv: no sample falls into --align 10s: the rows "
         "are 100000 s apart; align for longer, or correct --rate or the timestamps\n");

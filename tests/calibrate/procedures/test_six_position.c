@@ -395,7 +395,8 @@ static void test_bad_holds_refused(void **state)
 static void test_needed_holds_kept(void **state)
 {
     (void)state;
-    static const session_plan clean = {1, 8, 0, 0, 0, 0, 0, 0}, spoilt = {1, 8, 0, 0, 0.34, 0, 0, 0};
+    static const session_plan clean = {1, 8, 0, 0, 0, 0, 0, 0},
+                              spoilt = {1, 8, 0, 0, 0.34, 0, 0, 0};
     session *b = session_new();
     imk_error error;
     for (uint32_t n = 30; n < 36; n++) {
