@@ -379,8 +379,11 @@ static imk_test_record placed(const imk_calibrate_record *log, const double *zer
         for (int axis = 0; axis < 3 && count > 0 && count <= 3; axis++)
             record.reading[sensor][axis] = zero;
         for (int i = 0; i < count && count <= 3; i++) {
-            record.reading[sensor][log->body_axis[sensor][i]] = log->record.reading[sensor][i];
-            record.axis_count[sensor] = log->body_axis[sensor][i] + 1;
+            /* A record that was not loaded states no axes: they are in order. */
+            const int *axis = log->body_axis[sensor];
+            const int place = i > 0 && axis[i] <= axis[i - 1] ? i : axis[i];
+            record.reading[sensor][place] = log->record.reading[sensor][i];
+            record.axis_count[sensor] = place + 1;
         }
     }
     return record;
