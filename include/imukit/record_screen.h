@@ -53,7 +53,8 @@ typedef struct imk_screen {
     double core; /**< standard deviation within 32 samples by the median, which tails do not move,
                     over that by the mean square; 1 for normal noise */
     double noise_scatter;   /**< relative standard deviation of the variance within 32 samples over
-                               the record, by its scatter between batches; 0: too short */
+                               the record, by its scatter between batches, without
+                             outliers that are none of the noise; 0: too short */
     imk_screen_count stuck; /**< samples in runs of one value that are longer than the noise allows,
                                without the first sample of each run */
     size_t longest_stuck;   /**< samples in the longest run */

@@ -50,15 +50,15 @@ static void find_saturation(imk_screener *s)
 /* Relative standard deviation of the fast variance of the record, by the scatter of batches: of
  * those lengths of which there are enough, the largest. Student's quantile stands for the number of
  * batches. */
-static double fast_scatter(const imk_screener *s)
+static double fast_scatter(const imki_batches *batches)
 {
     double most = 0;
     for (int b = 0; b < IMKI_SCREEN_BATCHES; b++) {
-        const double n = s->batches[b].count, total = s->batches[b].total;
+        const double n = batches[b].count, total = batches[b].total;
         if (n < BATCHES_MIN || !(total > 0))
             continue;
         const double mean = total / n;
-        const double variance = (s->batches[b].squares - total * mean) / (n - 1);
+        const double variance = (batches[b].squares - total * mean) / (n - 1);
         const double wider = imk_student_quantile(0.975, n - 1) / imk_normal_quantile(0.975);
         most = fmax(most, wider * sqrt(fmax(0, variance) / n) / mean);
     }
@@ -84,7 +84,7 @@ static void find_tails(imk_screener *s)
     const double core = s->core_count > 0 ? 1.4826 * s->core_sum / s->core_count : 0;
     /* a sample is off the mean of 32, itself among them, by 31/32 of its variance */
     f->core = fast > 0 && core > 0 ? core / (fast * sqrt(31.0 / 32)) : 1;
-    f->noise_scatter = fast_scatter(s);
+    f->noise_scatter = fast_scatter(s->batches[f->heavy_tails ? 0 : 1]);
 }
 
 /* Levels and the temperatures beside them, in at most `most` means. @return how many levels */

@@ -84,8 +84,8 @@ struct imk_screener {
     size_t shoulder;             /* samples that are nearly outliers */
     double core_sum, core_count; /* median distances from the mean of 32 samples, of chunks */
     imki_counting counting;
-    double fast, fast_blocks; /* sum of the variances within blocks */
-    imki_batches batches[IMKI_SCREEN_BATCHES];
+    double fast, fast_blocks;                     /* sum of the variances within blocks */
+    imki_batches batches[2][IMKI_SCREEN_BATCHES]; /* with outliers, and without */
     double shift, norm, mean; /* of the samples: Chan's update of mean and root sum of squares */
     imki_ends high, low;      /* low: of the negatives */
     imki_levels levels;
@@ -99,7 +99,7 @@ void imki_screen_flush(imk_screener *screener);
 void imki_screen_extremes(size_t count, const double *samples, double *low, double *high);
 /* Mean and deviation of a new chunk join those before. */
 void imki_screen_moments(imk_screener *s, size_t count, const double *samples, size_t missing);
-/* Variance within blocks of 32 samples of `loose`: in batches; and by the median. */
+/* Variance within blocks of 32 samples: in batches; and by the median. */
 void imki_screen_variances(imk_screener *s);
 void imki_screen_core(imk_screener *s);
 

@@ -118,20 +118,28 @@ static void add_batch(imki_batches *b, double blocks, double sum, double enough)
     b->blocks = b->sum = 0;
 }
 
+static void add_batches(imki_batches *batches, double blocks, double sum)
+{
+    if (!(blocks > 0))
+        return;
+    for (int b = 0; b < IMKI_SCREEN_BATCHES; b++)
+        add_batch(&batches[b], blocks, sum, b == 0 ? 16 : b == 1 ? 200 : 1600);
+}
+
 /* Fast variance in batches of about 1024, 8192 and 65536 samples. */
 void imki_screen_variances(imk_screener *s)
 {
     enum { PIECE = 1024 };
     for (size_t from = 0; from < s->count[0]; from += PIECE) {
         const size_t left = s->count[0] - from, count = left < PIECE ? left : PIECE;
-        double sum = 0;
+        double sum = 0, clean = 0;
         const double here = (double)fast_variance(count, s->loose + from, &sum);
-        if (!(here > 0))
-            continue;
         s->fast += sum;
         s->fast_blocks += here;
-        for (int b = 0; b < IMKI_SCREEN_BATCHES; b++)
-            add_batch(&s->batches[b], here, sum, b == 0 ? 16 : b == 1 ? 200 : 1600);
+        add_batches(s->batches[0], here, sum);
+        const double there =
+            s->marked ? (double)fast_variance(count, s->clean + from, &clean) : here;
+        add_batches(s->batches[1], there, s->marked ? clean : sum);
     }
 }
 
