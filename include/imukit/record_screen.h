@@ -50,6 +50,9 @@ typedef struct imk_screen {
     /** More than 0.5 % of the samples are outliers, or many are nearly outliers: the tails of the
      *  noise itself, which imk_screen_apply() leaves in. */
     bool heavy_tails;
+    size_t
+        nearly;  /**< samples beyond 5 scales that are no outliers: at least as many as the outliers
+                    where the tails of the noise go on evenly, few where the outliers are faults */
     double core; /**< standard deviation within 32 samples by the median, which tails do not move,
                     over that by the mean square; 1 for normal noise */
     double noise_scatter;   /**< relative standard deviation of the variance within 32 samples over

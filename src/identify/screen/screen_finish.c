@@ -80,6 +80,7 @@ static void find_tails(imk_screener *s)
     const double due = tail_shoulder * outliers + 3 + 2e-6 * present;
     f->heavy_tails =
         f->outliers.count > 0 && (outliers > tail_share * present || (double)s->shoulder > due);
+    f->nearly = s->shoulder;
     const double fast = s->fast_blocks > 0 ? sqrt(s->fast / s->fast_blocks) : 0;
     const double core = s->core_count > 0 ? 1.4826 * s->core_sum / s->core_count : 0;
     /* a sample is off the mean of 32, itself among them, by 31/32 of its variance */

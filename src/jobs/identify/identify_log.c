@@ -94,6 +94,18 @@ imk_status imki_identify_explain(imk_identify_log *log, size_t channel, imk_stat
     return status;
 }
 
+/* What the estimate allows for, and what moves no strength of a sensor at rest, is no warning here.
+ */
+static void allow_for(imk_findings *findings)
+{
+    static const char *const codes[] = {"missing", "not_finite", "unordered", "jitter"};
+    for (size_t k = 0; k < findings->count; k++)
+        for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++)
+            if (strcmp(findings->item[k].code, codes[i]) == 0 &&
+                findings->item[k].level == IMK_FINDING_WARNING)
+                findings->item[k].level = IMK_FINDING_NOTE;
+}
+
 static imk_status identify(imk_identify_log *log, const imk_record_source *source,
                            const imk_job *job, imk_error *error)
 {
@@ -112,6 +124,7 @@ static imk_status identify(imk_identify_log *log, const imk_record_source *sourc
     for (size_t c = 0; log->screened && c < log->record.count; c++)
         imk_screen_adjust(&log->screen[c], log->settings.take_out, log->settings.confidence,
                           &log->result[c]);
+    allow_for(&log->findings);
     return status;
 }
 

@@ -117,7 +117,8 @@ static bool find_tails(const imk_identify_log *log, size_t channel, bool matter,
     const imk_estimate *white = &log->result[channel].term[IMK_NOISE_WHITE];
     const imk_term_display term =
         imk_channel_term(imk_even_record_column(&log->record, channel), IMK_NOISE_WHITE);
-    const bool matters = white->value * s->core < white->lower;
+    /* Tails that go on evenly are those of the noise; a cluster far off may be faults. */
+    const bool matters = white->value * s->core < white->lower && s->nearly < s->outliers.count;
     imki_text_add(detail, "%zu samples; %s %.4g %s, of most samples %.4g", s->outliers.count,
                   term.name, white->value / term.unit.scale, term.unit.text,
                   white->value * s->core / term.unit.scale);
@@ -191,6 +192,21 @@ static bool find_missing(const imk_identify_log *log, size_t channel, imki_text 
                   100 * (double)missing / (double)log->record.rows,
                   log->screened ? (double)s->longest_hole * log->record.dt : r->largest_gap);
     return missing > 0;
+}
+
+/* Samples are missing, and the white noise has shorter tails than Gaussian noise: those far from
+ * the level are not there. Tones and coarse steps shorten the tails, too. */
+static bool find_dropped(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const double by_chance = 5, share_least = 1e-3;
+    const imk_noise_changes *c = &log->changes[channel];
+    const imk_identification *r = &log->result[channel];
+    const double missing = (double)log->screen[channel].missing.count / (double)log->record.rows;
+    imki_text_add(detail, "%.3g %% missing, excess kurtosis %.2g, Gaussian 0 within %.1g",
+                  100 * missing, c->kurtosis, 2 * c->kurtosis_sigma);
+    return missing > share_least && log->map[channel] &&
+           c->kurtosis < -by_chance * c->kurtosis_sigma && r->sinusoid_count == 0 &&
+           r->resonance_count == 0 && r->resolution < 0.5 * r->deviation;
 }
 
 /* The joint estimate is not of one record alone. */
@@ -336,6 +352,11 @@ static const struct concern {
     {0, find_missing, 0, IMK_FINDING_NOTE, "missing",
      "samples are missing; the estimate uses those that are there, and its intervals allow for "
      "the gaps",
+     NULL},
+    {0, find_dropped, 0, IMK_FINDING_WARNING, "dropped",
+     "the samples far from the level are missing, as if a program had dropped what is out of a "
+     "range; "
+     "the white noise is too low; log every sample, or widen the range",
      NULL},
     {IMK_VERDICT_SHORT, find_short, 0, IMK_FINDING_NOTE, "short",
      "the record is too short for the slowest terms: they are bounded, not measured; log for "
@@ -511,16 +532,6 @@ static void assess_length(imk_verdict *v, const imk_identify_log *log)
                          1 / record->dt);
 }
 
-/* What a job found that is allowed for in the estimate. */
-static bool is_harmless(const imk_finding *f)
-{
-    static const char *const codes[] = {"missing", "not_finite", "unordered", "curve_tolerance"};
-    for (size_t k = 0; k < sizeof codes / sizeof codes[0]; k++)
-        if (strcmp(f->code, codes[k]) == 0)
-            return true;
-    return false;
-}
-
 /* Findings of the job itself. For a curve, only the quality of the fit is known. */
 static void add_findings(imk_verdict *v, const imk_identify_log *log)
 {
@@ -532,7 +543,7 @@ static void add_findings(imk_verdict *v, const imk_identify_log *log)
         imk_finding_text(f, text, sizeof text);
         if (misfit)
             imki_verdict_add(v, IMK_FINDING_WARNING, "misfit", "%s", text);
-        else if (f->level < IMK_FINDING_WARNING || !is_harmless(f))
+        else if (strcmp(f->code, "missing") != 0)
             imki_verdict_add(v, f->level,
                              f->level == IMK_FINDING_GOOD ? "curve" : imk_finding_code(f), "%s",
                              text);

@@ -26,6 +26,8 @@ static const struct words {
      "A start that drifts differently: %s."},
     {"misfit", "the model does not describe %s at all averaging times",
      "Model and log differ: %s."},
+    {"dropped", "the white noise of %s is too low, because samples far from the level are missing",
+     "Samples far from the level are missing: %s."},
     {"noise_changes", "the noise of %s changes with time", "Noise that changes with time: %s."},
     {"bursts", "the noise of %s comes in bursts", "Noise in bursts: %s."},
     {"heavy_tails", "samples far off may be noise or faults in %s",
