@@ -116,13 +116,28 @@ def _reasons(groups):
             if _mark(f) and any((f.name, k) in groups for k in range(3))]
 
 
+# Notes that name another explanation of a term that is claimed.
+TELLING = {"K": {"walk_or_drift", "ambiguous"}, "R": {"walk_or_drift", "ambiguous"},
+           "B": {"ambiguous"}}
+
+
+def told(entry):
+    """An all-clear whose moved term is claimed with a note on what else explains the log."""
+    move = entry["move"]
+    return (not entry["doubted"] and move and move["class"] == 2
+            and bool(TELLING.get(move["term"], set()) & set(entry["notes"])))
+
+
 def _sum_line(groups):
     beyond = [pair_classes(g)[1][2] for (name, _), g in groups.items()
               if not faults.BY_NAME[name].undecidable]
     total, clear, verdict = (sum(b[k] for b in beyond) for k in range(3))
     harmless = [e for (name, _), g in groups.items() for e in g if faults.BY_NAME[name].harmless]
+    named = sum(map(told, (e for (name, _), g in groups.items() for e in g
+                           if not faults.BY_NAME[name].undecidable)))
     return (f"False all-clears: {clear} of {total} pairs that moved beyond max(3 half-widths, 2 "
             f"%); {verdict} by the verdict alone (allowed: 0; undecidable faults apart).\n"
+            f"In {named} of these a note says what else the moved term may be.\n"
             f"Harmless faults doubted by the verdict: {sum(map(_in_verdict, harmless))} of "
             f"{len(harmless)}.")
 

@@ -194,6 +194,33 @@ static bool find_missing(const imk_identify_log *log, size_t channel, imki_text 
     return missing > 0;
 }
 
+/* A warm-up or an effect of temperature is in the log, and this channel has slow terms beside bias
+ * instability: a trend too weak to be told from them here, or what a lag leaves of it. */
+static bool find_trend_left(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    bool warm = false, thermal = false;
+    for (size_t c = 0; c < log->record.count; c++) {
+        warm = warm || log->screen[c].warm_up;
+        thermal = thermal || log->screen[c].temperature_degree > 0;
+    }
+    imki_text_put(detail, r->term[IMK_NOISE_RANDOM_WALK].present ? "random walk"
+                          : r->term[IMK_NOISE_RAMP].present      ? "ramp"
+                                                                 : "");
+    return (warm || thermal) && detail->size > 0;
+}
+
+/* A random walk or ramp of which the record holds little: other causes look the same. */
+static bool find_walk(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const double sure = 1.5;
+    const imk_identification *r = &log->result[channel];
+    const imk_estimate *walk = &r->term[IMK_NOISE_RANDOM_WALK], *ramp = &r->term[IMK_NOISE_RAMP];
+    imki_text_put(detail, walk->present ? "random walk" : "ramp");
+    return log->screen[channel].steps.count == 0 &&
+           (ramp->present || (walk->present && walk->upper > sure * walk->lower));
+}
+
 /* Samples are missing, and the white noise has shorter tails than Gaussian noise: those far from
  * the level are not there. Tones and coarse steps shorten the tails, too. */
 static bool find_dropped(const imk_identify_log *log, size_t channel, imki_text *detail)
@@ -345,6 +372,11 @@ static const struct concern {
     {0, find_temperature, IMK_SCREEN_TEMPERATURE, IMK_FINDING_NOTE, "temperature",
      "the readings follow the temperature; subtracted",
      "the readings follow the temperature; kept"},
+    {0, find_trend_left, 0, IMK_FINDING_WARNING, "trend_left",
+     "a warm-up or an effect of temperature is in this log, and these terms may be what is left of "
+     "it; "
+     "record again at a constant temperature, and switch the sensor on earlier",
+     NULL},
     {0, find_steps, 0, IMK_FINDING_WARNING, "steps",
      "the level jumps: the sensor was touched, or its range or filter was changed; the slow terms "
      "include the jump as noise",
@@ -352,6 +384,11 @@ static const struct concern {
     {0, find_missing, 0, IMK_FINDING_NOTE, "missing",
      "samples are missing; the estimate uses those that are there, and its intervals allow for "
      "the gaps",
+     NULL},
+    {0, find_walk, 0, IMK_FINDING_NOTE, "walk_or_drift",
+     "jumps of the level by a few times the bias instability, or a drift with the temperature if "
+     "the "
+     "log does not state it, look the same; this record cannot tell",
      NULL},
     {0, find_dropped, 0, IMK_FINDING_WARNING, "dropped",
      "the samples far from the level are missing, as if a program had dropped what is out of a "
