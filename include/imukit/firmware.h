@@ -99,9 +99,9 @@ typedef struct imk_firmware_channel {
     bool in_counts;
     int32_t origin;      /**< subtracted as an integer [count]; 0 in physical units */
     double lower, upper; /**< readings at or beyond these are flagged; the bound holds between */
-    unsigned flag;       /**< IMK_FLAG_SATURATED; without a range IMK_FLAG_LIMIT, and lower and upper
-                            follow from the limits */
-    int bits;            /**< fixed point: the reading is the integer times 2^-bits */
+    unsigned flag; /**< IMK_FLAG_SATURATED; without a range IMK_FLAG_LIMIT, and lower and upper
+                      follow from the limits */
+    int bits;      /**< fixed point: the reading is the integer times 2^-bits */
 } imk_firmware_channel;
 
 /** Number of arithmetic operations in all; a coefficient of 1 costs no multiplication. */

@@ -21,8 +21,8 @@ typedef struct imk_identify_curve_settings {
     /** See imk_allan_fit_settings. NaN (default): the smallest of 0 to 20 % with which the terms
      *  explain the curve; a finding states it if it is not 0. */
     double tolerance;
-    int gauss_markov_max;            /**< see imk_allan_fit_settings; default 0 */
-    bool plain;                      /**< the table is of non-overlapping clusters; default false */
+    int gauss_markov_max; /**< see imk_allan_fit_settings; default 0 */
+    bool plain;           /**< the table is of non-overlapping clusters; default false */
 } imk_identify_curve_settings;
 
 /** 95 % intervals, terms at 1 % significance. */

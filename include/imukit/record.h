@@ -98,7 +98,7 @@ typedef struct imk_record_source {
 IMK_API int imk_record_find(const imk_record_source *source, imk_quantity quantity, int axis);
 
 /** A column of a sensor in SI units, by name: gyro_x, accel_z, mag_x, time, temperature, or any
- * other.
+ *  other.
  *  @return the column; its quantity is IMK_QUANTITY_OTHER for a name that is not known */
 IMK_API imk_log_column imk_record_column(const char *name);
 

@@ -27,7 +27,7 @@
  *    axes 0-7 are gyros, 8-15 accelerometers, 16-23 magnetometers. Repeatabilities are normal 0 of
  *    the term IMK_TERM_REPEATABILITY, instance 0 the bias, 1 the scale factor;
  *  - a magnetometer sees the field, which is the same everywhere, in body axes at the middle of
- * each part of a sample. */
+ *    each part of a sample. */
 #ifndef IMUKIT_SIMULATE_H
 #define IMUKIT_SIMULATE_H
 
@@ -75,14 +75,14 @@ IMK_API size_t imk_simulator_size(const imk_model *model, const imk_simulation *
  *                 motion and the temperature profile must exist while it is used
  *  @return the errors of imk_model_validate() and of the motion; IMK_ERROR_RANGE;
  *          IMK_ERROR_CONFLICT (a recorded motion with a clock error, with another rate than its
- * own, or with a magnetometer, because it states no attitude); IMK_ERROR_WORKSPACE */
+ *          own, or with a magnetometer, because it states no attitude); IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_simulator_start(const imk_model *model, const imk_simulation *simulation,
                                        imk_simulator **simulator, void *memory, size_t memory_size,
                                        imk_error *error);
 
 /** Field of a magnetic dipole along the Earth's axis at a geodetic latitude [rad] on the ground, by
- *  the first coefficient of the geomagnetic model of 2025, 29.35 uT [IGRF14]: the true field
- * differs by up to 20 uT.
+ *  the first coefficient of the geomagnetic model of 2025, 29.35 uT [IGRF14]. The true field
+ *  differs by up to 20 uT.
  *  @param field  north, east (0), down [T] */
 IMK_API void imk_dipole_field(double latitude, double field[3]);
 

@@ -96,8 +96,7 @@ static void test_vibration(void **state)
     make_log("s = sin(6.2831853 * 2.7 * t) + sin(6.2831853 * 5.4 * t) / 2; $2 += s / 20; $3 += s / "
              "15");
     identify_log("--verbose");
-    check_contains(out, "vibrates (a fan, a motor, the building), at 2.",
-                   "tones");
+    check_contains(out, "vibrates (a fan, a motor, the building), at 2.", "tones");
     identify_log("");
     check_contains(out, "Vibration of what the sensor stands on, in gyro_x and gyro_y.", "list");
     make_log("$2 += sin(6.2831853 * 2.7 * t) / 20");
