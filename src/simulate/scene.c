@@ -253,8 +253,11 @@ bool imki_scenes_agree(const imki_scene *a, const imki_scene *b)
     /* At rest each has its own trajectory, and what follows the temperature a state. */
     if (!a->trajectory || a->trajectory != b->trajectory || a->temperature || b->temperature)
         return false;
-    if (a->has_field != b->has_field || memcmp(a->field, b->field, sizeof a->field) != 0)
+    if (a->has_field != b->has_field)
         return false;
+    for (int i = 0; i < 3; i++)
+        if (a->field[i] != b->field[i])
+            return false;
     for (int i = 0; i < IMK_KINDS; i++)
         if (a->warm_up_present[i] != b->warm_up_present[i] ||
             (a->warm_up_present[i] && a->warm_up_time[i] != b->warm_up_time[i]))

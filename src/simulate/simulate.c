@@ -69,15 +69,16 @@ static size_t axes_of(const imk_triad *triad)
 static imki_axis axis_of(const imk_model *model, size_t channel)
 {
     static const char *const names[IMK_KINDS] = {"gyro", "accel", "mag"};
-    int kind = IMK_GYRO;
-    while (channel >= axes_of(imk_model_triad(model, kind)))
-        channel -= axes_of(imk_model_triad(model, kind++));
-    return (imki_axis){imk_model_triad(model, kind),
-                       names[kind],
-                       kind == IMK_GYRO ? IMK_GYRO : IMK_ACCEL,
-                       kind,
-                       (int)channel,
-                       (uint8_t)(channel + (size_t)kind * IMK_AXES_MAX)};
+    imki_axis axis = {.kind = NULL};
+    for (int kind = 0; kind < IMK_KINDS; kind++) {
+        const imk_triad *triad = imk_model_triad(model, kind);
+        axis = (imki_axis){triad, names[kind],  kind == IMK_GYRO ? IMK_GYRO : IMK_ACCEL,
+                           kind,  (int)channel, (uint8_t)(channel + (size_t)kind * IMK_AXES_MAX)};
+        if (channel < axes_of(triad))
+            break;
+        channel -= axes_of(triad);
+    }
+    return axis;
 }
 
 static size_t channels_of(const imk_model *model, const imk_simulation *simulation)

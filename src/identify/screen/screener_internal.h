@@ -96,7 +96,7 @@ struct imk_screener {
 void imki_screen_flush(imk_screener *screener);
 
 /* screener_moments.c */
-void imki_screen_extremes(size_t count, const double *samples, double *low, double *high);
+void imki_screen_extremes(size_t count, const double *x, double *low, double *high);
 /* Mean and deviation of a new chunk join those before. */
 void imki_screen_moments(imk_screener *s, size_t count, const double *samples, size_t missing);
 /* Variance within blocks of 32 samples: in batches; and by the median. */

@@ -128,10 +128,10 @@ static double compare_squares(const columns *c, size_t i, size_t j, double *insi
 {
     const double n = c->n[j] - c->n[i], rest = c->n[c->count] - n;
     const double square = c->square[j] - c->square[i];
-    if (n < SIDE_LEAST || rest < SIDE_LEAST || !(square < c->square[c->count]))
-        return 0;
     *inside = c->degrees * n;
     *outside = c->degrees * rest;
+    if (n < SIDE_LEAST || rest < SIDE_LEAST || !(square < c->square[c->count]))
+        return 0;
     return square / n / ((c->square[c->count] - square) / rest);
 }
 

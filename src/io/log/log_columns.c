@@ -231,7 +231,7 @@ static const kind *misfit(const imki_log_layout_read *layout, const kind *asked,
     bool fits = false;
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         const kind *k = &kinds[i];
-        if (!k->option || strcmp(k->option, asked->option) != 0)
+        if (!k->option || !asked->option || strcmp(k->option, asked->option) != 0)
             continue;
         fits = fits || has_dimension(k, unit);
         for (size_t j = 0; j < layout->column_count; j++) {

@@ -38,7 +38,7 @@ static double median_of(double *values, size_t count)
         for (;;) {
             while (values[i] < pivot)
                 i++;
-            while (pivot < values[j])
+            while (j > first && pivot < values[j])
                 j--;
             if (i >= j)
                 break;
@@ -61,7 +61,7 @@ static double median_of_copy(const double *values, size_t count)
 
 static double median_of_pending(const imki_record_times *times)
 {
-    double size[IMKI_STEP_GROUP];
+    double size[IMKI_STEP_GROUP] = {0};
     for (size_t i = 0; i < times->pending; i++)
         size[i] = times->step[i].size;
     return median_of(size, times->pending);
