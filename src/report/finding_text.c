@@ -85,6 +85,8 @@ static const struct message {
      "{name}: {0.3g} % of the rows repeat the row before on all axes, so the sensor has {1.5g} Hz "
      "and the log {2.5g} Hz: all terms are wrong at short averaging times; log at the rate of the "
      "sensor, or keep new samples only"},
+    {"copy", "{name} has the values of {other} in every row: one of the two is a copy, so give the "
+             "right columns with --columns"},
     {"stamps:rate_differs", "--rate says {0.7g} Hz, but the time column {1.7g} Hz; --rate is used, "
                             "and every result follows from it: check which one is right"},
     /* record_spacing.c */

@@ -136,6 +136,11 @@ static void wrap(test_log *l, double period)
         l->time[i] = fmod(l->time[i], period);
 }
 
+static void copy_axis(test_log *l, double axis)
+{
+    memcpy(l->gyro[(int)axis], l->gyro[0], sizeof l->gyro[0]);
+}
+
 static void offset(test_log *l, double seconds)
 {
     for (size_t i = 0; i < l->rows; i++)
@@ -516,14 +521,20 @@ static void test_noise(void **context)
     check_noise((fault[]){{step_back, 5}, {NULL, 0}}, 5);
 }
 
-/* The verdict of held samples and of late rows is no all-clear. */
+/* The verdict of held samples, of late rows and of a column given twice is no all-clear, and begins
+ * with a short sentence. */
 static void test_verdict(void **context)
 {
     (void)context;
     static test_log l;
-    static const fault faults[][2] = {{{hold, 1.5}, {NULL, 0}}, {{burst, 100}, {NULL, 0}}};
-    static const char *const codes[] = {"held", "late"};
-    for (int k = 0; k < 2; k++) {
+    static const fault faults[][2] = {
+        {{hold, 1.5}, {NULL, 0}}, {{burst, 100}, {NULL, 0}}, {{copy_axis, 2}, {NULL, 0}}};
+    static const char *const codes[] = {"held", "late", "copy"};
+    static const char *const sentences[] = {
+        "Usable with care: rows repeat the samples of a slower sensor",
+        "Usable with care: rows are stamped late",
+        "Usable with care: a column is the copy of another"};
+    for (int k = 0; k < 3; k++) {
         imk_array_source memory;
         imk_identify_log *found;
         imk_error error;
@@ -539,6 +550,8 @@ static void test_verdict(void **context)
             told = told || (strcmp(verdict.message[m].code, codes[k]) == 0 &&
                             verdict.message[m].level == IMK_FINDING_WARNING);
         assert_true(told);
+        const char *sentence = imk_identify_sentence(&verdict);
+        assert_memory_equal(sentence, sentences[k], strlen(sentences[k]));
         imk_result_free(result);
         imk_identify_log_free(found);
     }

@@ -115,6 +115,6 @@ imk_status imk_even_record_load(const imk_record_source *source, imk_gap_policy 
     imk_log_forget_faults(&record->log);
     status = space(source->rate, gaps, record, &repeats, findings, error);
     if (status == IMK_OK)
-        imki_repeats_tell(&repeats, record->dt, findings);
+        imki_repeats_tell(&repeats, record->log.column, record->dt, findings);
     return status;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Is a sensor slower than the log, so that rows repeat its samples?
+/* Is a sensor slower than the log, so that rows repeat its samples? Is a column the copy of another?
  *
  * A share h of the rows repeats the row before on all axes of the sensor at once; the others do on
  * axis c by chance, with probability u_c, independently:
@@ -17,6 +17,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { ROWS = 2048, FAR = 16, WINDOW = 64, LEAST = 256, HALVINGS = 50 };
@@ -69,8 +70,20 @@ static void count_windows(imki_repeat_counts *s, size_t rows, const uint8_t *all
     }
 }
 
+/* Channels with noise of their own differ within some rows, so that this costs nothing. */
+static void compare_channels(imki_repeat_counts *s, size_t rows, double *const *columns,
+                             size_t first)
+{
+    for (size_t b = 1; b < s->channels; b++)
+        for (size_t a = 0; a < b; a++)
+            if (!s->differ[a][b])
+                s->differ[a][b] = memcmp(columns[s->column[a]] + first, columns[s->column[b]] + first,
+                                         rows * sizeof **columns) != 0;
+}
+
 static void add_rows(imki_repeat_counts *s, size_t rows, double *const *columns, size_t first)
 {
+    compare_channels(s, rows, columns, first);
     uint8_t all[2][ROWS];
     memset(all, 1, sizeof all);
     for (size_t c = 0; c < s->channels; c++) {
@@ -153,8 +166,31 @@ static void tell_sensor(const imki_repeat_counts *s, const char *name, double dt
                   IMKI_NUMBERS(100 * held, (1 - held) / dt, 1 / dt));
 }
 
-void imki_repeats_tell(const imki_repeats *r, double dt, imk_findings *findings)
+/* A channel that hardly ever changes is told by others, and may equal a second one by chance. */
+static bool is_copy(const imki_repeat_counts *s, size_t a, size_t b)
 {
-    for (int k = 0; k < 2; k++)
+    return !s->differ[a][b] && s->rows >= LEAST && (double)s->equal[b][0] < 0.9 * (double)s->rows;
+}
+
+static void tell_copies(const imki_repeat_counts *s, const imk_log_column *columns,
+                        imk_findings *findings)
+{
+    for (size_t b = 1; b < s->channels; b++)
+        for (size_t a = 0; a < b; a++)
+            if (is_copy(s, a, b)) {
+                char names[2 * sizeof columns->name];
+                snprintf(names, sizeof names, "%s\t%s", columns[s->column[b]].name,
+                         columns[s->column[a]].name);
+                imki_find(findings, IMK_FINDING_WARNING, "copy", names, 0, NULL);
+                break;
+            }
+}
+
+void imki_repeats_tell(const imki_repeats *r, const imk_log_column *columns, double dt,
+                       imk_findings *findings)
+{
+    for (int k = 0; k < 2; k++) {
         tell_sensor(&r->sensor[k], k == 1 ? "accel" : r->others ? "columns" : "gyro", dt, findings);
+        tell_copies(&r->sensor[k], columns, findings);
+    }
 }

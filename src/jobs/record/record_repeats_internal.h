@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Samples of a slow sensor, held in the rows of a faster log. */
+/* Samples of a slow sensor, held in the rows of a faster log, and columns that repeat another. */
 #ifndef IMUKI_RECORD_REPEATS_INTERNAL_H
 #define IMUKI_RECORD_REPEATS_INTERNAL_H
 
@@ -13,6 +13,7 @@ typedef struct imki_repeat_counts {
     size_t channels, rows, all[2], equal[IMK_LOG_COLUMNS_MAX][2];
     /* of windows of rows: number, and sums of the repeats in one and of their squares */
     double windows, sum, square_sum;
+    bool differ[IMK_LOG_COLUMNS_MAX][IMK_LOG_COLUMNS_MAX]; /* of channels, the earlier one first */
 } imki_repeat_counts;
 
 typedef struct imki_repeats {
@@ -25,7 +26,9 @@ void imki_repeats_start(imki_repeats *repeats, size_t count, const int *channel,
                         const imk_log_column *columns);
 /* Count in some rows of the log, one array for each column. */
 void imki_repeats_add(imki_repeats *repeats, size_t rows, double *const *columns);
-/* Tell of sensors that are slower than the log. @param dt  of the log [s] */
-void imki_repeats_tell(const imki_repeats *repeats, double dt, imk_findings *findings);
+/* Tell of sensors that are slower than the log, and of columns that are copies.
+ * @param columns  of the log  @param dt  of the log [s] */
+void imki_repeats_tell(const imki_repeats *repeats, const imk_log_column *columns, double dt,
+                       imk_findings *findings);
 
 #endif

@@ -16,6 +16,8 @@ void imki_verdict_list(imk_verdict *verdict, imk_finding_level level, const char
                        const char *before, imki_text *list, const char *after);
 /* The channels that the last message concerns; from its code follow its few words. */
 void imki_verdict_about(imk_verdict *verdict, const imk_even_record *record, uint64_t channels);
+/* The clause of the last message, a finding with this code. */
+void imki_verdict_clause(imk_verdict *verdict, const char *code);
 /* "usability" with its sentence, and the array "verdict". */
 void imki_verdict_data(const imk_verdict *verdict, imk_result *result);
 /* Coloured boxes. */

@@ -584,6 +584,8 @@ static void add_findings(imk_verdict *v, const imk_identify_log *log)
             imki_verdict_add(v, f->level,
                              f->level == IMK_FINDING_GOOD ? "curve" : imk_finding_code(f), "%s",
                              text);
+        if (v->count > before)
+            imki_verdict_clause(v, f->code);
         if (f->level == IMK_FINDING_WARNING && v->count > before)
             v->message[before].told = true;
     }

@@ -37,7 +37,18 @@ static const struct words {
      "Many samples far off, kept as noise: %s."},
     {"undetermined", "a term of %s can take the place of another",
      "Terms that can replace each other: %s."},
-    {"unordered", "rows whose time does not increase are left out", NULL},
+    {"stamps:unordered", "rows whose time does not increase are left out", NULL},
+    {"stamps:longest_stretch", "only the longest part without missing samples is used", NULL},
+    {"stamps:coarse", "one stamp is that of several rows", NULL},
+    {"stamps:bunched", "rows are stamped in bunches", NULL},
+    {"stamps:late", "rows are stamped late", NULL},
+    {"stamps:jumps", "the clock steps back", NULL},
+    {"stamps:doubled", "rows stand twice in the log", NULL},
+    {"stamps:two_rates", "the sample interval changes with time", NULL},
+    {"stamps:alternate", "long and short steps of the time alternate", NULL},
+    {"stamps:held", "rows repeat the samples of a slower sensor", NULL},
+    {"stamps:rate_differs", "--rate is not the rate of the time column", NULL},
+    {"copy", "a column is the copy of another", NULL},
     {"runs_differ", "the logs do not have the same noise", NULL},
     {"outliers", NULL, "Outliers, left out: %s."},
     {"tails", NULL, "Samples far off, kept as noise: %s."},
@@ -125,6 +136,13 @@ static const char *filled(imk_verdict *v, const char *pattern, const char *names
     return imk_result_key(v->result, "%.*s%s%s", (int)(place - pattern), pattern, names, place + 2);
 }
 
+void imki_verdict_clause(imk_verdict *v, const char *code)
+{
+    const struct words *w = words_of(code);
+    if (w && v->message && v->count > 0)
+        v->message[v->count - 1].clause = w->clause;
+}
+
 void imki_verdict_about(imk_verdict *v, const imk_even_record *record, uint64_t channels)
 {
     imki_text names = {.bytes = NULL};
@@ -177,12 +195,13 @@ const char *imk_identify_sentence(const imk_verdict *v)
                                       "record is too short "
                                       "for some slow terms, which are bounded."
                                     : "Usable: no test found a fault.";
-    const char *text = imk_result_key(v->result, "%s", grades[usability]);
+    const char *text = imk_result_key(v->result, "%s", grades[usability]), *last = NULL;
     size_t told = 0, left = 0;
     for (size_t k = 0; k < v->count; k++) {
         const imk_message *m = &v->message[k];
-        if (m->level != level)
+        if (m->level != level || (last && m->clause == last)) /* of another sensor, too */
             continue;
+        last = m->clause;
         if (told == CLAUSES_MOST) {
             left++;
             continue;
