@@ -93,6 +93,7 @@ typedef struct imk_turns_findings {
     double chi_square;   /**< of them, by placement_sigma and the noise */
     bool direction_read; /**< some turns state no direction: it is that which their gyro reads */
     size_t saturated;    /**< turns left out in which a gyro is at the end of its range */
+    size_t missing;      /**< turns left out in which samples are missing, or beside no rest */
     size_t other_moves;  /**< moves left out that are about one axis by about half or twice the
                             angle stated, or more, or as large but about no one axis */
     size_t other_begin;  /**< sample at which the first of these begins */

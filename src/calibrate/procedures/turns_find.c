@@ -347,13 +347,16 @@ static void label_turns(const imki_procedure_call *call, imki_turn_list *list)
             continue;
         int axis;
         if (!find_rests(list, &turn) || !measure(list, &turn) || turn.angle == 0.0) {
+            call->findings->known_turns.missing++;
             call->findings->left_out++;
             continue;
         }
         const bool one = about_one_axis(list, &turn, &axis);
+        const double size = fabs(angle_read(list, &turn, axis));
         turn.body = list->body[axis];
-        if (!one || (l.axis >= 0 && l.axis != turn.body)) {
-            tell_other(call, list, &turn, axis, false);
+        if (!one || (l.axis >= 0 && l.axis != turn.body) ||
+            (list->known && size < slack * fabs(turn.angle))) {
+            tell_other(call, list, &turn, axis, one && l.axis == turn.body);
             call->findings->left_out++;
             continue;
         }
@@ -374,8 +377,13 @@ static double detect_turns(const imki_procedure_call *call, imki_turn_list *list
                                 .before = r,
                                 .after = r + 1};
         int axis;
-        if (turn.end <= turn.begin || !measure(list, &turn))
+        if (turn.end <= turn.begin)
             continue;
+        if (!measure(list, &turn)) {
+            call->findings->known_turns.missing += full > 0.0;
+            call->findings->left_out += full > 0.0;
+            continue;
+        }
         const bool one = about_one_axis(list, &turn, &axis);
         const double angle = angle_read(list, &turn, axis), size = fabs(angle);
         largest = one ? fmax(largest, size) : largest;
@@ -471,5 +479,7 @@ imk_status imki_turn_list_make(const imki_procedure_call *call, imki_turn_list *
     return imki_refuse(call->error, IMK_ERROR_TOO_SHORT, "turn", 0.0, 1.0,
                        call->findings->known_turns.saturated > 0
                            ? "turn more slowly: a gyro is at the end of its range in every turn"
-                           : "turn the unit about one of its axes, from one rest to the next");
+                           : "turn the unit about one of its axes, by the angle stated "
+                             "(--turn-angle, or labels), from one rest to the next; check the unit "
+                             "of the gyro columns");
 }

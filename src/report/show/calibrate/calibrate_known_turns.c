@@ -214,7 +214,14 @@ void imki_turns_verdict(const imk_calibrate_log *b, const imk_calibrate_record *
                                   "%s: in %zu turn%s a gyro is at the end of its range: left out; "
                                   "turn more slowly, or choose a larger range in the device",
                                   log->path, f->saturated, f->saturated == 1 ? "" : "s"));
+    if (f->missing > 0)
+        add(v, imki_calibrate_say(IMK_FINDING_WARNING, "turns_missing",
+                                  "%s: in %zu move%s samples are missing, or there is no rest "
+                                  "beside it: left out",
+                                  log->path, f->missing, f->missing == 1 ? "" : "s"));
     add_scatter(b, log, v);
+    if (!imki_has_only_turns(b))
+        return;
     add(v, imki_calibrate_say(
                IMK_FINDING_NOTE, "attitude_unknown",
                "%s: without accelerometers the attitude is not known: the uncertainty of the bias "
