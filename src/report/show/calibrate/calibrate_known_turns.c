@@ -198,8 +198,8 @@ static void add_scatter(const imk_calibrate_log *b, const imk_calibrate_record *
                 IMK_FINDING_WARNING, "placement",
                 "%s: the angles of the turns scatter by %.2g deg (1 sigma), %.2g times what "
                 "--placement and the noise explain: this is included in the uncertainty of the "
-                "scale factors; check the mark or the edge that the unit is turned to, or state "
-                "--placement %.2gdeg",
+                "scale factors, but not of the misalignments; check the mark or the edge that "
+                "the unit is turned to, or state --placement %.2gdeg, which counts for both",
                 log->path, f.scatter / degree, sqrt(f.chi_square / f.freedom), f.scatter / degree));
 }
 
