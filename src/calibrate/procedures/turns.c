@@ -229,6 +229,8 @@ static void observe_across(const imki_procedure_call *call, const imki_turn_list
     const double earth = 0.5 * call->calibration->earth_rate * call->calibration->earth_rate;
     imk_observation o = empty_observation(call, fixture);
     size_t turns = 0;
+    o.knowledge = IMK_INPUT_PLACED;
+    o.placement_sigma = placement;
     o.relative = true;
     o.rate[body] = 1.0;
     for (int i = 0; i < gyros(list); i++) {
@@ -247,9 +249,8 @@ static void observe_across(const imki_procedure_call *call, const imki_turn_list
         }
         if (!(angles > 0.0))
             continue;
-        const double sigma = sqrt(variance / (angles * angles) + placement * placement);
         o.reading[IMK_GYRO][i] = relative_reading(call, list, product / angles, i);
-        o.sigma[IMK_GYRO][i] = fmax(sigma, 1e-9) * fabs(list->unit[i]);
+        o.sigma[IMK_GYRO][i] = fmax(sqrt(variance) / angles, 1e-9) * fabs(list->unit[i]);
     }
     if (turns > 0)
         (void)imk_calibration_observe(call->calibration, &o);
@@ -291,6 +292,37 @@ static offset offset_of(const imki_turn_list *list, int axis)
     return o;
 }
 
+/* What an earlier log of turns read at rest; NULL: there is none. */
+static imk_observation *rests_before(const imki_procedure_call *call)
+{
+    const imk_calibration *c = call->calibration;
+    for (size_t k = 0; k < c->observation_count; k++)
+        if (c->observation[k].relative)
+            for (size_t first = 0;; first++)
+                if (c->observation[first].record == c->observation[k].record)
+                    return &c->observation[first];
+    return NULL;
+}
+
+/* Of several logs the weighted mean is one observation: the estimator would take how they agree for
+ * the scatter of all gyro readings. */
+static void join_rests(const imki_turn_list *list, imk_observation *before,
+                       const imk_observation *o)
+{
+    double chi_square = 0.0;
+    for (int i = 0; i < gyros(list); i++) {
+        double *reading = &before->reading[IMK_GYRO][i], *sigma = &before->sigma[IMK_GYRO][i];
+        const double own = o->sigma[IMK_GYRO][i], off = o->reading[IMK_GYRO][i] - *reading;
+        const double sum = own * own + *sigma * *sigma;
+        chi_square += off * off / sum;
+        *reading += off * *sigma * *sigma / sum;
+        *sigma *= own / sqrt(sum);
+    }
+    const double widened = widening(chi_square, gyros(list));
+    for (int i = 0; i < gyros(list); i++)
+        before->sigma[IMK_GYRO][i] *= widened;
+}
+
 /* Where the attitudes scatter by more than the Earth and the g-sensitivity stated explain, that
  * counts. */
 static void observe_rests(const imki_procedure_call *call, const imki_turn_list *list)
@@ -316,7 +348,11 @@ static void observe_rests(const imki_procedure_call *call, const imki_turn_list 
     o.begin = list->rest[0].begin;
     o.end = list->rest[list->rest_count - 1].end;
     o.temperature = list->rest[0].temperature;
-    (void)imk_calibration_observe(call->calibration, &o);
+    imk_observation *before = rests_before(call);
+    if (before)
+        join_rests(list, before, &o);
+    else
+        (void)imk_calibration_observe(call->calibration, &o);
 }
 
 /* ---- parameters ------------------------------------------------------------------------------
@@ -364,7 +400,9 @@ imk_status imki_turns_observe(const imki_procedure_call *call)
     if (!(call->settings->turn_angle > 0.0))
         return imki_refuse(call->error, IMK_ERROR_RANGE, "turn_angle", call->settings->turn_angle,
                            0.0, "above 0: labels, or the gyros, say which way a turn goes");
-    const imk_status status = imki_turn_list_make(call, &list);
+    imk_status status = imki_turn_list_make(call, &list);
+    if (status == IMK_OK)
+        status = free_terms(call, &list);
     if (status != IMK_OK)
         return status;
     const size_t needed = c->observation_count + list.turn_count + 4;
@@ -387,5 +425,5 @@ imk_status imki_turns_observe(const imki_procedure_call *call)
         observe_turn(call, &list, &list.turn[k], widened, fixture);
     for (int body = 0; body < 3; body++)
         observe_across(call, &list, body, fixture);
-    return free_terms(call, &list);
+    return IMK_OK;
 }

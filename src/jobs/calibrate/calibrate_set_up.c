@@ -313,7 +313,8 @@ static void leave_out_accelerometers(imk_calibrate_log *b)
 {
     for (size_t k = 0; k < b->count; k++) {
         imk_test_record *record = &b->record[k].record;
-        if (b->record[k].procedure != IMK_PROCEDURE_TURNS || record->axis_count[IMK_ACCEL] == 0)
+        if (b->record[k].procedure != IMK_PROCEDURE_TURNS || record->axis_count[IMK_GYRO] == 0 ||
+            record->axis_count[IMK_ACCEL] == 0)
             continue;
         record->axis_count[IMK_ACCEL] = 0;
         imki_find(&b->findings, IMK_FINDING_NOTE, "turns_without_accel", b->record[k].path, 0,

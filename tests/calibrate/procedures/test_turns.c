@@ -77,6 +77,28 @@ static bench *make(size_t moves, const move *moved)
     return b;
 }
 
+/* The log of a bench into a calibration, which may hold others. */
+static imk_status observe(bench *b, imk_calibration *c)
+{
+    const size_t size = imk_procedure_workspace_size(IMK_PROCEDURE_TURNS, &b->record, &b->settings);
+    void *workspace = malloc(size);
+    const imk_status status =
+        imk_procedure_observe(IMK_PROCEDURE_TURNS, c, &b->record, &b->settings, false, &b->findings,
+                              workspace, size, &b->error);
+    free(workspace);
+    return status;
+}
+
+static imk_status solve_observed(bench *b)
+{
+    const size_t size = imk_calibration_workspace_size(&b->calibration);
+    void *workspace = malloc(size);
+    const imk_status status =
+        imk_calibration_solve(&b->calibration, &b->result, workspace, size, &b->error);
+    free(workspace);
+    return status;
+}
+
 static imk_status solve(bench *b)
 {
     imk_calibration *c = &b->calibration;
@@ -88,18 +110,8 @@ static imk_status solve(bench *b)
     c->model.gyro.axis_count = b->record.axis_count[IMK_GYRO];
     c->observation = b->observation;
     c->observation_capacity = 64;
-    size_t size = imk_procedure_workspace_size(IMK_PROCEDURE_TURNS, &b->record, &b->settings);
-    void *workspace = malloc(size);
-    imk_status status = imk_procedure_observe(IMK_PROCEDURE_TURNS, c, &b->record, &b->settings,
-                                              false, &b->findings, workspace, size, &b->error);
-    free(workspace);
-    if (status != IMK_OK)
-        return status;
-    size = imk_calibration_workspace_size(c);
-    workspace = malloc(size);
-    status = imk_calibration_solve(c, &b->result, workspace, size, &b->error);
-    free(workspace);
-    return status;
+    const imk_status status = observe(b, c);
+    return status == IMK_OK ? solve_observed(b) : status;
 }
 
 static const move thrice[] = {{.angle = {0, 0, 360}},  {.angle = {0, 0, -360}},
@@ -336,6 +348,33 @@ static void test_scatter(void **state)
     free(b);
 }
 
+/* Three logs of turns about one axis each: the bias has three attitudes, and how little they differ
+ * here makes nothing more certain, neither it nor how square the axes are. */
+static void test_several_logs(void **state)
+{
+    (void)state;
+    static const move moves[3][2] = {{{.angle = {360, 0, 0}}, {.angle = {-360, 0, 0}}},
+                                     {{.angle = {0, 360, 0}}, {.angle = {0, -360, 0}}},
+                                     {{.angle = {0, 0, 360}}, {.angle = {0, 0, -360}}}};
+    bench *b[3];
+    for (int k = 0; k < 3; k++)
+        b[k] = make(2, moves[k]);
+    CHECK_OK(solve(b[0]));
+    const double alone = sigma_of(b[0], IMK_MODEL_BIAS, 1);
+    CHECK_OK(observe(b[1], &b[0]->calibration));
+    CHECK_OK(observe(b[2], &b[0]->calibration));
+    assert_int_equal(b[0]->calibration.observation_count, 1 + 3 * 3);
+    CHECK_OK(solve_observed(b[0]));
+    CHECK_RELATIVE(sigma_of(b[0], IMK_MODEL_BIAS, 1), alone / sqrt(3.0), 1e-3);
+    for (int i = 0; i < 3; i++) {
+        CHECK_CLOSE(value_of(b[0], IMK_MODEL_SCALE_FACTOR, i), scale.value[i], 1.7e-4);
+        const int p = find(b[0], IMK_MODEL_MISALIGNMENT, i, (i + 1) % 3);
+        CHECK_RELATIVE(b[0]->result.sigma[p], 0.1 * degree, 0.02);
+    }
+    for (int k = 0; k < 3; k++)
+        free(b[k]);
+}
+
 /* In counts the sensitivity is found; the scale factors are relative to it. */
 static void test_counts(void **state)
 {
@@ -428,7 +467,7 @@ int main(void)
         cmocka_unit_test(test_one_gyro),        cmocka_unit_test(test_one_axis),
         cmocka_unit_test(test_other_moves),     cmocka_unit_test(test_wrong_angle),
         cmocka_unit_test(test_saturated),       cmocka_unit_test(test_scatter),
-        cmocka_unit_test(test_counts),          cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_intervals)};
+        cmocka_unit_test(test_counts),          cmocka_unit_test(test_several_logs),
+        cmocka_unit_test(test_refusals),        cmocka_unit_test(test_intervals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

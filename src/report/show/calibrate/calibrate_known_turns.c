@@ -220,14 +220,14 @@ void imki_turns_verdict(const imk_calibrate_log *b, const imk_calibrate_record *
                                   "beside it: left out",
                                   log->path, f->missing, f->missing == 1 ? "" : "s"));
     add_scatter(b, log, v);
-    if (!imki_has_only_turns(b))
+    if (!imki_has_only_turns(b) || log != b->record)
         return;
     add(v, imki_calibrate_say(
                IMK_FINDING_NOTE, "attitude_unknown",
-               "%s: without accelerometers the attitude is not known: the uncertainty of the bias "
+               "without accelerometers the attitude is not known: the uncertainty of the bias "
                "includes the Earth's rotation and a g-sensitivity of %.2g deg/h/g (1 sigma, state "
                "--g-sensitivity-sigma), and that of the misalignments how square the axes of the "
                "turns are to the unit, %.2g deg (--placement)",
-               log->path, log->settings.g_sensitivity_sigma * 9.80665 * 3600 / degree,
+               log->settings.g_sensitivity_sigma * 9.80665 * 3600 / degree,
                log->settings.placement_sigma / degree));
 }
