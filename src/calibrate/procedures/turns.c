@@ -29,6 +29,7 @@
 #include "imukit/distributions.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Readings are taken for exact beside the angle, whose sigma has their noise in it: then what
  * scatters is the angle, and nothing else is widened. */
@@ -187,6 +188,50 @@ static imk_observation empty_observation(const imki_procedure_call *call, int fi
     return o;
 }
 
+/* What an earlier log of turns gave of the same: at rest, or about the same axis. */
+static imk_observation *like_before(const imk_calibration *c, const imk_observation *o)
+{
+    int last = -1; /* record of the latest turn */
+    for (size_t k = c->observation_count; k-- > 0;) {
+        imk_observation *other = &c->observation[k];
+        const bool across = other->relative && !(other->turn_time > 0.0);
+        if (other->record == o->record)
+            continue;
+        if (other->relative)
+            last = other->record;
+        if (o->relative ? across && memcmp(other->rate, o->rate, sizeof o->rate) == 0
+                        : !other->relative && other->record == last)
+            return other;
+    }
+    return NULL;
+}
+
+/* Of several logs the weighted mean is one observation: the estimator would take how they agree for
+ * the scatter of all gyro readings. */
+static void observe_or_join(const imki_procedure_call *call, const imk_observation *o)
+{
+    imk_observation *before = like_before(call->calibration, o);
+    double chi_square = 0.0, freedom = 0.0;
+    if (!before) {
+        (void)imk_calibration_observe(call->calibration, o);
+        return;
+    }
+    for (int i = 0; i < IMK_AXES_MAX; i++) {
+        double *reading = &before->reading[IMK_GYRO][i], *sigma = &before->sigma[IMK_GYRO][i];
+        if (isnan(o->reading[IMK_GYRO][i]))
+            continue;
+        const double own = o->sigma[IMK_GYRO][i], off = o->reading[IMK_GYRO][i] - *reading;
+        const double sum = own * own + *sigma * *sigma;
+        chi_square += off * off / sum;
+        freedom += 1.0;
+        *reading += off * *sigma * *sigma / sum;
+        *sigma *= own / sqrt(sum);
+    }
+    const double widened = widening(chi_square, freedom);
+    for (int i = 0; i < IMK_AXES_MAX; i++)
+        before->sigma[IMK_GYRO][i] *= widened;
+}
+
 /* A reading less that at rest, where the model's zero offset is to be taken off. */
 static double relative_reading(const imki_procedure_call *call, const imki_turn_list *list,
                                double reading, int axis)
@@ -212,10 +257,10 @@ static void observe_turn(const imki_procedure_call *call, const imki_turn_list *
         if (list->body[i] != turn->body)
             continue;
         const double variance = placement * placement + angle_variance(list, turn, i);
-        o.placement_sigma = fmax(widened * sqrt(variance), 1e-9);
+        const double sigma = fmax(widened * sqrt(variance), 1e-9);
+        o.placement_sigma = sigma * sqrt(1.0 - reading_share * reading_share);
         o.reading[IMK_GYRO][i] = relative_reading(call, list, turn->read[i], i);
-        o.sigma[IMK_GYRO][i] =
-            reading_share * o.placement_sigma / turn->duration * fabs(list->unit[i]);
+        o.sigma[IMK_GYRO][i] = reading_share * sigma / turn->duration * fabs(list->unit[i]);
     }
     (void)imk_calibration_observe(call->calibration, &o);
 }
@@ -229,8 +274,6 @@ static void observe_across(const imki_procedure_call *call, const imki_turn_list
     const double earth = 0.5 * call->calibration->earth_rate * call->calibration->earth_rate;
     imk_observation o = empty_observation(call, fixture);
     size_t turns = 0;
-    o.knowledge = IMK_INPUT_PLACED;
-    o.placement_sigma = placement;
     o.relative = true;
     o.rate[body] = 1.0;
     for (int i = 0; i < gyros(list); i++) {
@@ -249,11 +292,12 @@ static void observe_across(const imki_procedure_call *call, const imki_turn_list
         }
         if (!(angles > 0.0))
             continue;
+        const double sigma = sqrt(variance / (angles * angles) + placement * placement);
         o.reading[IMK_GYRO][i] = relative_reading(call, list, product / angles, i);
-        o.sigma[IMK_GYRO][i] = fmax(sqrt(variance) / angles, 1e-9) * fabs(list->unit[i]);
+        o.sigma[IMK_GYRO][i] = fmax(sigma, 1e-9) * fabs(list->unit[i]);
     }
     if (turns > 0)
-        (void)imk_calibration_observe(call->calibration, &o);
+        observe_or_join(call, &o);
 }
 
 /* A turn leads from the rest before to this one: the unit was not put down otherwise. */
@@ -292,37 +336,6 @@ static offset offset_of(const imki_turn_list *list, int axis)
     return o;
 }
 
-/* What an earlier log of turns read at rest; NULL: there is none. */
-static imk_observation *rests_before(const imki_procedure_call *call)
-{
-    const imk_calibration *c = call->calibration;
-    for (size_t k = 0; k < c->observation_count; k++)
-        if (c->observation[k].relative)
-            for (size_t first = 0;; first++)
-                if (c->observation[first].record == c->observation[k].record)
-                    return &c->observation[first];
-    return NULL;
-}
-
-/* Of several logs the weighted mean is one observation: the estimator would take how they agree for
- * the scatter of all gyro readings. */
-static void join_rests(const imki_turn_list *list, imk_observation *before,
-                       const imk_observation *o)
-{
-    double chi_square = 0.0;
-    for (int i = 0; i < gyros(list); i++) {
-        double *reading = &before->reading[IMK_GYRO][i], *sigma = &before->sigma[IMK_GYRO][i];
-        const double own = o->sigma[IMK_GYRO][i], off = o->reading[IMK_GYRO][i] - *reading;
-        const double sum = own * own + *sigma * *sigma;
-        chi_square += off * off / sum;
-        *reading += off * *sigma * *sigma / sum;
-        *sigma *= own / sqrt(sum);
-    }
-    const double widened = widening(chi_square, gyros(list));
-    for (int i = 0; i < gyros(list); i++)
-        before->sigma[IMK_GYRO][i] *= widened;
-}
-
 /* Where the attitudes scatter by more than the Earth and the g-sensitivity stated explain, that
  * counts. */
 static void observe_rests(const imki_procedure_call *call, const imki_turn_list *list)
@@ -348,11 +361,7 @@ static void observe_rests(const imki_procedure_call *call, const imki_turn_list 
     o.begin = list->rest[0].begin;
     o.end = list->rest[list->rest_count - 1].end;
     o.temperature = list->rest[0].temperature;
-    imk_observation *before = rests_before(call);
-    if (before)
-        join_rests(list, before, &o);
-    else
-        (void)imk_calibration_observe(call->calibration, &o);
+    observe_or_join(call, &o);
 }
 
 /* ---- parameters ------------------------------------------------------------------------------

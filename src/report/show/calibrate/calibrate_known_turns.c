@@ -40,14 +40,13 @@ static bool turn_of(const imk_calibrate_log *b, const imk_observation *o, turn *
     const imk_triad *gyro = &b->result->model.gyro;
     if (!imki_is_of_turns(b, o) || !(o->turn_time > 0))
         return false;
-    t->sigma = o->placement_sigma * b->result->placement.factor;
+    *t = (turn){.sigma = o->placement_sigma * b->result->placement.factor};
     for (int axis = 0; axis < gyro->axis_count; axis++) {
         if (isnan(o->reading[0][axis]))
             continue;
         double rate = o->reading[0][axis];
         if (b->record[o->record].record.counts[0])
             rate = (rate - gyro->zero_offset.value[axis]) / gyro->sensitivity.value[axis];
-        t->body = 0;
         for (int j = 1; j < 3; j++)
             if (fabs(o->rate[j]) > fabs(o->rate[t->body]))
                 t->body = j;
@@ -197,9 +196,9 @@ static void add_scatter(const imk_calibrate_log *b, const imk_calibrate_record *
             imki_calibrate_say(
                 IMK_FINDING_WARNING, "placement",
                 "%s: the angles of the turns scatter by %.2g deg (1 sigma), %.2g times what "
-                "--placement and the noise explain: this is included in the uncertainty of the "
-                "scale factors, but not of the misalignments; check the mark or the edge that "
-                "the unit is turned to, or state --placement %.2gdeg, which counts for both",
+                "--placement and the noise explain: the uncertainty of the scale factors "
+                "includes this; check the mark or the edge that the unit is turned to, or state "
+                "--placement %.2gdeg, which counts for the misalignments too",
                 log->path, f.scatter / degree, sqrt(f.chi_square / f.freedom), f.scatter / degree));
 }
 
