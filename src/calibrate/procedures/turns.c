@@ -25,11 +25,11 @@
  * so rests between turns about one axis count once. */
 #include "turns_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "base/refuse_internal.h"
 #include "imukit/distributions.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Readings are taken for exact beside the angle, whose sigma has their noise in it: then what
  * scatters is the angle, and nothing else is widened. */
@@ -199,7 +199,7 @@ static imk_observation *like_before(const imk_calibration *c, const imk_observat
             continue;
         if (other->relative)
             last = other->record;
-        if (o->relative ? across && memcmp(other->rate, o->rate, sizeof o->rate) == 0
+        if (o->relative ? across && imki_dot3(other->rate, o->rate) > 0.5
                         : !other->relative && other->record == last)
             return other;
     }
