@@ -312,15 +312,15 @@ static bool is_saturated(const imki_procedure_call *call, const imki_turn_list *
     return false;
 }
 
-static void tell_other(const imki_procedure_call *call, const imki_turn_list *list,
-                       const imki_known_turn *turn, int axis, bool one)
+/* @param body  -1: about no one axis, or not that of the label */
+static void tell_other(const imki_procedure_call *call, size_t begin, int body, double angle)
 {
     imk_turns_findings *f = &call->findings->known_turns;
     if (f->other_moves++ > 0)
         return;
-    f->other_begin = turn->begin;
-    f->other_axis = one ? list->body[axis] : -1;
-    f->other_angle = angle_read(list, turn, axis);
+    f->other_begin = begin;
+    f->other_axis = body;
+    f->other_angle = angle;
 }
 
 static void keep(const imki_procedure_call *call, imki_turn_list *list, const imki_known_turn *turn)
@@ -356,7 +356,8 @@ static void label_turns(const imki_procedure_call *call, imki_turn_list *list)
         turn.body = list->body[axis];
         if (!one || (l.axis >= 0 && l.axis != turn.body) ||
             (list->known && size < slack * fabs(turn.angle))) {
-            tell_other(call, list, &turn, axis, one && l.axis == turn.body);
+            tell_other(call, k, one && l.axis == turn.body ? turn.body : -1,
+                       angle_read(list, &turn, axis));
             call->findings->left_out++;
             continue;
         }
@@ -366,55 +367,77 @@ static void label_turns(const imki_procedure_call *call, imki_turn_list *list)
     }
 }
 
-/* Moves between neighbouring rests. `full`: the angle that gyros read of a turn; 0: the largest one
- * is looked for, and returned. */
-static double detect_turns(const imki_procedure_call *call, imki_turn_list *list, double full)
+/* Moves between neighbouring rests; their angles are those read, their body axis is -1 where they
+ * are about no one axis. */
+static void list_moves(const imki_procedure_call *call, imki_turn_list *list)
 {
-    double largest = 0.0;
     for (size_t r = 0; r + 1 < list->rest_count; r++) {
-        imki_known_turn turn = {.begin = list->rest[r].end,
+        imki_known_turn move = {.begin = list->rest[r].end,
                                 .end = list->rest[r + 1].begin,
                                 .before = r,
                                 .after = r + 1};
         int axis;
-        if (turn.end <= turn.begin)
+        if (move.end <= move.begin)
             continue;
-        if (!measure(list, &turn)) {
-            call->findings->known_turns.missing += full > 0.0;
-            call->findings->left_out += full > 0.0;
-            continue;
-        }
-        const bool one = about_one_axis(list, &turn, &axis);
-        const double angle = angle_read(list, &turn, axis), size = fabs(angle);
-        largest = one ? fmax(largest, size) : largest;
-        if (full == 0.0)
-            continue;
-        if (!one || !(fabs(size - full) < slack * full)) {
-            const bool half = size > half_least * full && size < half_most * full;
-            if (size >= (1.0 - slack) * full || (one && half))
-                tell_other(call, list, &turn, axis, one);
+        if (!measure(list, &move)) {
+            call->findings->known_turns.missing++;
+            call->findings->left_out++;
             continue;
         }
-        turn.body = list->body[axis];
-        turn.angle = angle < 0.0 ? -call->settings->turn_angle : call->settings->turn_angle;
-        keep(call, list, &turn);
+        move.body = about_one_axis(list, &move, &axis) ? list->body[axis] : -1;
+        move.angle = angle_read(list, &move, axis);
+        list->turn[list->turn_count++] = move;
     }
-    return largest;
 }
 
-/* By the angle stated; where no move is near it, the readings may be wrong by a factor, and the
- * largest moves are taken. */
-static void detect_all_turns(const imki_procedure_call *call, imki_turn_list *list)
+static bool is_near(const imki_known_turn *move, double full)
 {
-    const imk_turns_findings none = {.freedom = 0.0};
-    if (list->known)
-        (void)detect_turns(call, list, call->settings->turn_angle);
-    if (list->turn_count > 0 || call->findings->known_turns.saturated > 0)
-        return;
-    call->findings->known_turns = none;
-    const double largest = detect_turns(call, list, 0.0);
-    if (largest > 0.0)
-        (void)detect_turns(call, list, largest);
+    return move->body >= 0 && fabs(fabs(move->angle) - full) < slack * full;
+}
+
+static size_t moves_near(const imki_turn_list *list, double full)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < list->turn_count; k++)
+        count += is_near(&list->turn[k], full);
+    return count;
+}
+
+/* What gyros read in a turn: the angle stated; where no move is near it, or the unit is not known,
+ * that which most moves about one axis share, and of these the largest. */
+static double angle_of_turns(const imki_turn_list *list, double stated)
+{
+    double full = stated;
+    size_t most = list->known ? moves_near(list, stated) : 0;
+    for (size_t k = 0; k < list->turn_count && !(list->known && full == stated && most > 0); k++) {
+        const double size = fabs(list->turn[k].angle);
+        const size_t count = list->turn[k].body < 0 ? 0 : moves_near(list, size);
+        if (count > most || (count == most && count > 0 && size > full)) {
+            most = count;
+            full = size;
+        }
+    }
+    return full;
+}
+
+static void detect_turns(const imki_procedure_call *call, imki_turn_list *list)
+{
+    const double stated = call->settings->turn_angle;
+    list_moves(call, list);
+    const double full = angle_of_turns(list, stated), unit = list->known ? 1.0 : stated / full;
+    const size_t moves = list->turn_count;
+    list->turn_count = 0;
+    for (size_t k = 0; k < moves; k++) {
+        imki_known_turn move = list->turn[k];
+        const double size = fabs(move.angle);
+        const bool half = size > half_least * full && size < half_most * full;
+        if (is_near(&move, full)) {
+            move.angle = move.angle < 0.0 ? -stated : stated;
+            keep(call, list, &move);
+        } else if (size >= (1.0 - slack) * full || (move.body >= 0 && half)) {
+            tell_other(call, move.begin, move.body, unit * move.angle);
+        }
+    }
 }
 
 /* ---- all of it -------------------------------------------------------------------------------
@@ -473,7 +496,7 @@ imk_status imki_turn_list_make(const imki_procedure_call *call, imki_turn_list *
     if (labelled)
         label_turns(call, list);
     else
-        detect_all_turns(call, list);
+        detect_turns(call, list);
     if (list->turn_count > 0)
         return IMK_OK;
     return imki_refuse(call->error, IMK_ERROR_TOO_SHORT, "turn", 0.0, 1.0,

@@ -311,6 +311,27 @@ static void test_wrong_angle(void **state)
     free(b);
 }
 
+/* In counts, where nothing says how large the readings of a turn are, most moves are turns: two
+ * moves by twice the angle are none. */
+static void test_counts_of_most(void **state)
+{
+    (void)state;
+    move moves[THRICE];
+    memcpy(moves, thrice, sizeof moves);
+    moves[2] = (move){.angle = {720, 0, 0}};
+    moves[5] = (move){.angle = {0, -720, 0}};
+    bench *b = make(THRICE, moves);
+    for (int i = 0; i < 3; i++)
+        for (size_t k = 0; k < b->record.count; k++)
+            b->reading[i][k] = rint(940.0 * b->reading[i][k]);
+    b->record.counts[IMK_GYRO] = true;
+    CHECK_OK(solve(b));
+    CHECK_RELATIVE(b->result.model.gyro.sensitivity.value[2], 940.0, 0.01);
+    assert_int_equal(b->findings.known_turns.other_moves, 2);
+    CHECK_CLOSE(b->findings.known_turns.other_angle, 720.0 * degree, 0.2);
+    free(b);
+}
+
 /* A turn in which a gyro is at the end of its range is left out, stated or seen. */
 static void test_saturated(void **state)
 {
@@ -466,8 +487,9 @@ int main(void)
         cmocka_unit_test(test_labels),          cmocka_unit_test(test_wrong_sign),
         cmocka_unit_test(test_one_gyro),        cmocka_unit_test(test_one_axis),
         cmocka_unit_test(test_other_moves),     cmocka_unit_test(test_wrong_angle),
-        cmocka_unit_test(test_saturated),       cmocka_unit_test(test_scatter),
-        cmocka_unit_test(test_counts),          cmocka_unit_test(test_several_logs),
-        cmocka_unit_test(test_refusals),        cmocka_unit_test(test_intervals)};
+        cmocka_unit_test(test_counts_of_most),  cmocka_unit_test(test_saturated),
+        cmocka_unit_test(test_scatter),         cmocka_unit_test(test_counts),
+        cmocka_unit_test(test_several_logs),    cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_intervals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,6 +39,9 @@ static void add_of_gyros(const imk_calibrate_log *b, imki_text *list)
              has(b, IMK_PROCEDURE_TURNS, IMK_PROCEDURE_TURNS, false))
         add_item(list, "a sampling rate that is some per cent off (the scale factors of all "
                        "gyros change by as much)");
+    if (b->nominal[0] && imki_has_only_turns(b))
+        add_item(list, "turns by another angle than stated (the sensitivity found is wrong by as "
+                       "much)");
     bool read = false;
     for (size_t k = 0; k < b->count; k++)
         read = read || b->record[k].findings.known_turns.direction_read;
