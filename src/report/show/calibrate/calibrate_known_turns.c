@@ -202,13 +202,22 @@ static void add_scatter(const imk_calibrate_log *b, const imk_calibrate_record *
                 log->path, f.scatter / degree, sqrt(f.chi_square / f.freedom), f.scatter / degree));
 }
 
+/* As the diagnostics of the log have said it. */
+static bool saturation_is_said(const imk_calibrate_record *log)
+{
+    for (size_t d = 0; d < log->diagnostic_count; d++)
+        if (log->diagnostic[d].kind == IMK_DIAGNOSTIC_SATURATED)
+            return true;
+    return false;
+}
+
 void imki_turns_verdict(const imk_calibrate_log *b, const imk_calibrate_record *log, imk_verdict *v)
 {
     const imk_turns_findings *f = &log->findings.known_turns;
     if (log->procedure != IMK_PROCEDURE_TURNS || !b->result)
         return;
     add_other_moves(log, v);
-    if (f->saturated > 0)
+    if (f->saturated > 0 && !saturation_is_said(log))
         add(v, imki_calibrate_say(IMK_FINDING_WARNING, "saturated",
                                   "%s: in %zu turn%s a gyro is at the end of its range: left out; "
                                   "turn more slowly, or choose a larger range in the device",
