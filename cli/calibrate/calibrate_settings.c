@@ -138,7 +138,7 @@ static int procedure_of(const char *name, size_t length, session *b, size_t log)
     const char *nearest = command_nearest(given, IMK_PROCEDURES + 1, names);
     return command_misused("--procedure %s: there is no such procedure%s%s%s; there are "
                            "multiposition, sixposition, ferraris, rate-table, tumble, centrifuge, "
-                           "spin, thermal and repeatability",
+                           "spin, thermal, turns and repeatability",
                            given, nearest ? " (did you mean " : "", nearest ? nearest : "",
                            nearest ? "?)" : "");
 }
@@ -176,10 +176,11 @@ static int assign_procedures(session *b)
 static int check_used(const session *b)
 {
     const calibrate_options *o = b->options;
-    bool referenced = false, ferraris = false, thermal = false;
+    bool referenced = false, turned = false, turns = false, thermal = false;
     for (size_t k = 0; k < b->count && !b->settings.repeatability; k++) {
         const imk_procedure p = b->procedure[k];
-        ferraris = ferraris || p == IMK_PROCEDURE_FERRARIS;
+        turns = turns || p == IMK_PROCEDURE_TURNS;
+        turned = turned || turns || p == IMK_PROCEDURE_FERRARIS;
         thermal = thermal || p == IMK_PROCEDURE_THERMAL;
         referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
                      p == IMK_PROCEDURE_CENTRIFUGE || p == IMK_PROCEDURE_SPIN;
@@ -192,8 +193,12 @@ static int check_used(const session *b)
         return command_misused("--motion-offset is used with --motion only: add --motion");
     if (o->settings.table_axis >= 0 && !referenced)
         return command_misused(none, "table-axis", o->procedure, "rate-table");
-    if (!isnan(o->settings.turn_angle) && !ferraris)
-        return command_misused(none, "turn-angle", o->procedure, "ferraris");
+    if (!isnan(o->settings.turn_angle) && !turned)
+        return command_misused(none, "turn-angle", o->procedure, "ferraris and turns");
+    if (turns && o->settings.turn_angle <= 0)
+        return command_misused("--turn-angle: with --procedure turns the angle is above 0; a label "
+                               "such as \"z -90deg\" states which way a turn goes, else each goes "
+                               "as its gyro reads");
     if (o->temperature_order.given && !thermal)
         return command_misused(none, "temperature-order", o->procedure, "thermal");
     if (!isnan(o->settings.reference_temperature) && !thermal)

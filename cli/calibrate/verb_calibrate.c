@@ -11,8 +11,8 @@
 static const option result_options[] = {
     {"procedure", OPTION_TEXT, AT(procedure), .letter = 'p', .value = "NAME",
      .help = "procedure of the test: multiposition, sixposition, ferraris, rate-table, tumble, "
-             "centrifuge, spin, thermal or repeatability; one for all logs, or one for each log, "
-             "separated by commas"},
+             "centrifuge, spin, thermal, turns or repeatability; one for all logs, or one for each "
+             "log, separated by commas"},
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "MODEL",
      .help = "write the model here (.yaml or .json)"},
     {"into", OPTION_INTO, AT(into), .value = "MODEL",
@@ -100,12 +100,14 @@ static const option log_options[] = {
      .help = "time left out in addition at the beginning, until filters have settled; default 0s"},
     {"placement", OPTION_QUANTITY, AT(settings.placement), .value = "ANGLE", .unit = "deg",
      .choices = "0..180",
-     .help = "1 sigma of the attitude of each placement on a face; default 0.1deg for sixposition "
-             "and ferraris"},
+     .help =
+         "1 sigma of the attitude of each placement on a face, and of the angle and the axis of "
+         "a turn; default 0.1deg for sixposition, ferraris and turns"},
     {"g-sensitivity-sigma", OPTION_QUANTITY, AT(settings.g_sensitivity_sigma), .value = "RATE",
      .unit = "deg/h/g", .choices = "not negative",
-     .help = "1 sigma of the g-sensitivity of the gyros where a log with a reference does not "
-             "determine it, included in the uncertainty of the biases; default 36deg/h/g, or what "
+     .help = "1 sigma of the g-sensitivity of the gyros where a log with a reference, or of turns, "
+             "does not determine it, included in the uncertainty of the biases; default 36deg/h/g, "
+             "or what "
              "the log shows; 0deg/h/g: the model has the exact value"},
     {"mounting", OPTION_QUANTITY, AT(settings.mounting), .value = "ANGLE", .unit = "deg",
      .choices = "0..180",
@@ -113,7 +115,8 @@ static const option log_options[] = {
              "holds; default 0deg"},
     {"turn-angle", OPTION_QUANTITY, AT(settings.turn_angle), .value = "ANGLE", .unit = "deg",
      .choices = "-36000..36000",
-     .help = "ferraris: angle of each turn about its axis, with sign; default 360deg"},
+     .help = "ferraris: angle of each turn about its axis, with sign; turns: of each turn whose "
+             "label states none, above 0; default 360deg"},
     {"motion", OPTION_FILE, AT(motion), .value = "PROGRAMME",
      .help = "motion file that the table ran; it is the reference"},
     {"motion-offset", OPTION_TEXT, AT(motion_offset), .value = "TIME|auto",
@@ -204,8 +207,9 @@ const verb calibrate_verb = {
         "parameter comes with 1 sigma, a 95 % interval and correlations. A verdict says whether "
         "the result can be used.\n\n"
         "multiposition needs no equipment: the unit rests in different attitudes and is turned by "
-        "hand between them. sixposition and ferraris need the faces of a housing, and ferraris "
-        "full turns about three axes as well. rate-table, tumble, centrifuge and spin need the "
+        "hand between them. turns calibrates gyros without accelerometers, by turns of known angle "
+        "about each axis. sixposition and ferraris need the faces of a housing, and ferraris full "
+        "turns about three axes as well. rate-table, tumble, centrifuge and spin need the "
         "rates or forces that acted on the unit: columns reference_rate_x [deg/s] …, "
         "reference_force_x [g] … in the log (mean over the sample, in inertial space, gravity "
         "included), table_rate [deg/s] with --table-axis, or the programme of the table as a "

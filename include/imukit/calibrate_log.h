@@ -64,11 +64,13 @@ typedef struct imk_calibrate_log_settings {
     const char *section; /**< name of the column of texts that names holds, turns or runs; default
                               NULL: the only column of texts, if there is one. With multiposition,
                               rests in rows without a text are then no holds */
-    double placement;    /**< 1 sigma of the attitude of a face on the plate [rad] */
+    double placement;    /**< 1 sigma of the attitude of a face on the plate; of angle and axis of a
+                            turn [rad] */
     double g_sensitivity_sigma; /**< 1 sigma of a g-sensitivity that is not estimated [rad/s per
                                    m/s^2] */
     double mounting;     /**< 1 sigma of the attitude of the unit on its fixture or table [rad] */
-    double turn_angle;   /**< ferraris: angle of each turn about its axis, with sign [rad] */
+    double turn_angle;   /**< ferraris: angle of each turn about its axis, with sign; turns: of each
+                            turn whose label states none, above 0 [rad] */
     double initial_rest; /**< duration of the rest at the beginning [s] */
     double window;       /**< length of the window in which rest is detected [s] */
     double minimum;      /**< shortest rest, step or run [s] */

@@ -81,6 +81,9 @@ typedef struct imk_observation {
                            */
     int fixture;      /**< index of the fixture whose mounting it shares; -1: none */
     bool correlated;  /**< true: sigma includes slow noise already, and none is added */
+    bool relative;    /**< true: the readings are those less the readings at rest, so that the bias
+                           and all that does not depend on the rate have no part in them (of counts,
+                           plus the zero offset) */
     /* Filled by imk_calibration_solve(): */
     double residual[2][IMK_AXES_MAX]; /**< reading less fit [rad/s], [m/s^2]; NaN: not observed */
     double vertical[3]; /**< of an unknown attitude: direction of the specific force, body axes */

@@ -13,7 +13,8 @@
  *      tumble         known attitudes under gravity: dividing head
  *      centrifuge     known forces of several g
  *      spin           fast rotation: places of the accelerometers (size effect)
- *      thermal        bias, and scale factor, against temperature */
+ *      thermal        bias, and scale factor, against temperature
+ *      turns          gyros alone: turns by known angles about their axes, between rests */
 #ifndef IMUKIT_PROCEDURE_H
 #define IMUKIT_PROCEDURE_H
 
@@ -31,6 +32,7 @@ typedef enum imk_procedure {
     IMK_PROCEDURE_CENTRIFUGE,
     IMK_PROCEDURE_SPIN,
     IMK_PROCEDURE_THERMAL,
+    IMK_PROCEDURE_TURNS,
     IMK_PROCEDURES
 } imk_procedure;
 /** "multiposition", "rate-table" …; NULL beyond the last. */
@@ -41,10 +43,11 @@ IMK_API const char *imk_procedure_name(imk_procedure procedure);
 typedef struct imk_procedure_settings {
     uint32_t cookie;
     imk_static_settings stationary; /**< detection of holds at unknown times */
-    double placement_sigma; /**< sixposition, ferraris, tumble: 1 sigma of the attitude of each hold
-                               [rad]; 0: exact */
-    double fixture_sigma;   /**< all procedures with a reference: 1 sigma of the unit's mounting on
-                               its fixture or table [rad]; 0: exact */
+    double
+        placement_sigma;  /**< sixposition, ferraris, tumble: 1 sigma of the attitude of each hold;
+                             turns: of the angle of each turn, and of its axis [rad]; 0: exact */
+    double fixture_sigma; /**< all procedures with a reference: 1 sigma of the unit's mounting on
+                             its fixture or table [rad]; 0: exact */
     /** Time left out at each end of a stretch of constant reference [s]; default 0.2. */
     double trim;
     /** Further time left out at the beginning, for filters to settle [s]; default 0. */
@@ -54,20 +57,20 @@ typedef struct imk_procedure_settings {
     double steady_force; /**< the same for the force [m/s^2]; default 1e-3 */
     double minimum;      /**< shortest stretch [s]; default 0.5 */
     bool gyro_turns;     /**< multiposition: calibrate the gyros, too, by the turns; default true */
-    double turn_angle; /**< ferraris: angle of each turn about its axis, with sign [rad]; default 2
-                          pi */
-    bool nonlinear;    /**< estimate, too: K2, Koq, K3 and asymmetry, as far as the inputs determine
-                          them (rate-table, centrifuge); K2, K3 and cross products (tumble). Default
-                          true, for tumble false */
+    double turn_angle;   /**< ferraris: angle of each turn about its axis, with sign; turns: of each
+                            turn whose label states none, above 0 [rad]; default 2 pi */
+    bool nonlinear; /**< estimate, too: K2, Koq, K3 and asymmetry, as far as the inputs determine
+                       them (rate-table, centrifuge); K2, K3 and cross products (tumble). Default
+                       true, for tumble false */
     bool cross_products; /**< tumble, centrifuge: estimate Kip, Kio, Kpo; default false */
     bool g_sensitivity, g2_sensitivity; /**< estimate those of the gyros, where the forces vary;
                                            default true, false */
     bool labelled_only; /**< multiposition: only rests within sections that have a label are holds;
                              default false */
-    double g_sensitivity_sigma; /**< rate-table, tumble, centrifuge: 1 sigma of each g-sensitivity
-                                   that is not determined or not estimated, as part of the other
-                                   sigmas [rad/s per m/s^2]; default 0.01 deg/s per g; 0: it is
-                                   exactly as in the model */
+    double g_sensitivity_sigma; /**< rate-table, tumble, centrifuge, turns: 1 sigma of each
+                                   g-sensitivity that is not determined or not estimated, as part of
+                                   the other sigmas [rad/s per m/s^2]; default 0.01 deg/s per g; 0:
+                                   it is exactly as in the model */
     double sine_block;     /**< rate-table: averaging time of samples where the reference is never
                               constant [s]; 0 (default): single samples */
     int temperature_order; /**< thermal: order for the bias; 0 (default): chosen by
@@ -83,6 +86,21 @@ IMK_API imk_procedure_settings imk_procedure_default(imk_procedure procedure);
 
 enum { IMK_UNDETERMINED_MAX = 32 };
 
+/** Findings of the procedure "turns". */
+typedef struct imk_turns_findings {
+    double freedom;      /**< repetitions: turns less the axes turned about */
+    double scatter;      /**< 1 sigma of the angle of a turn that these show [rad] */
+    double chi_square;   /**< of them, by placement_sigma and the noise */
+    bool direction_read; /**< some turns state no direction: it is that which their gyro reads */
+    size_t saturated;    /**< turns left out in which a gyro is at the end of its range */
+    size_t missing;      /**< turns left out in which samples are missing, or beside no rest */
+    size_t other_moves;  /**< moves left out that are about one axis by about half or twice the
+                            angle stated, or more, or as large but about no one axis */
+    size_t other_begin;  /**< sample at which the first of these begins */
+    int other_axis;      /**< its axis; -1: about no one axis */
+    double other_angle;  /**< angle that the gyro reads in it [rad] */
+} imk_turns_findings;
+
 /** Findings of a procedure about the log. */
 typedef struct imk_procedure_findings {
     imk_static_findings stationary; /**< only for procedures that detect holds */
@@ -94,6 +112,7 @@ typedef struct imk_procedure_findings {
                          product of their unit vectors, 1/3 at best; 0: all in one plane */
     double lag, lag_sigma; /**< delay of the readings against a reference that is never constant,
                               estimated and corrected [s]; sigma 0: not estimated */
+    imk_turns_findings known_turns; /**< of the procedure "turns", else zeros */
     size_t undetermined_count; /**< number of parameters that the procedure estimates but this log
                                   does not determine: they keep the model's values */
     imk_model_parameter undetermined[IMK_UNDETERMINED_MAX]; /**< the first of them */
@@ -105,8 +124,8 @@ IMK_API size_t imk_procedure_workspace_size(imk_procedure procedure, const imk_t
 
 /** Analyse a record: add it, its observations and its turns to the calibration, and make free the
  *  parameters that can be determined. If readings are in counts and the model states no
- *  sensitivity, multiposition, sixposition, ferraris and rate-table find a nominal one and put it
- *  into the model; the others return IMK_ERROR_UNIT_MISSING.
+ *  sensitivity, multiposition, sixposition, ferraris, turns and rate-table find a nominal one and
+ *  put it into the model; the others return IMK_ERROR_UNIT_MISSING.
  *  @param keep_free  true: the caller has chosen the free parameters, and none are added
  *  @return IMK_ERROR_TOO_SHORT (field "hold", "turn", "step", "temperature"; value: number found,
  *          limit: number needed), IMK_ERROR_KEY_MISSING (field: what the record lacks:

@@ -266,6 +266,9 @@ static const struct message {
      "first in row {2}; these rows, or the hold or step that they interrupt, are left out"},
     {"axis_gap", "{record} has {name}: calibration needs the axes x, y, z in this order; name the "
                  "columns with --columns"},
+    {"turns_without_accel",
+     "{name}: turns uses the gyros only; ferraris (six faces and these turns) or multiposition (20 "
+     "attitudes) calibrates the accelerometers too, and says more of bias and g-sensitivity"},
     {"axis_renamed", "{name} is axis {other} in the tables and in the model, which states its "
                      "direction"},
     {"axes_named", "{record} has other {name} axes than the other logs: name them alike, in the "

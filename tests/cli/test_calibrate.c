@@ -291,11 +291,11 @@ static void wrong_usage_is_explained(void **state)
                   "imukit calibrate: error: the procedure of the test is missing: add --procedure "
                   "multiposition for a unit that was turned by hand from rest to rest; imukit "
                   "calibrate --help lists the others\n" TRY("calibrate"));
-    check_message(
-        "$I calibrate rest.csv -p multiposistion", 2,
-        "imukit calibrate: error: --procedure multiposistion: there is no such procedure "
-        "(did you mean multiposition?); there are multiposition, sixposition, ferraris, "
-        "rate-table, tumble, centrifuge, spin, thermal and repeatability\n" TRY("calibrate"));
+    check_message("$I calibrate rest.csv -p multiposistion", 2,
+                  "imukit calibrate: error: --procedure multiposistion: there is no such procedure "
+                  "(did you mean multiposition?); there are multiposition, sixposition, ferraris, "
+                  "rate-table, tumble, centrifuge, spin, thermal, turns and repeatability\n" TRY(
+                      "calibrate"));
     check_message("$I calibrate rest.csv -p multiposition,thermal", 2,
                   "imukit calibrate: error: --procedure multiposition,thermal: 2 procedures for 1 "
                   "log; give one for all, or one for each\n" TRY("calibrate"));

@@ -173,6 +173,27 @@ static void by_rotations(const exposure *x, const imki_axis_reading *y, int firs
                        lever[2] * x->by_fixture.m[2][k]);
 }
 
+/* Prediction of a reading and its derivatives by the parameters; of a relative one the difference
+ * to what the axis reads at rest. */
+static void predict(const imki_estimator *e, const imk_observation *o, const exposure *x,
+                    const imki_axis_reading *y, double reading, imki_row *row)
+{
+    const imk_calibration *problem = e->problem;
+    imki_input still = x->input;
+    memset(still.rate, 0, sizeof still.rate);
+    imki_axis_reading rest = {.value = 0.0};
+    if (o->relative)
+        rest = imki_axis_read(&problem->model, row->sensor, row->axis, &still);
+    row->residual = reading - (y->value - rest.value);
+    for (int k = 0; k < e->axis_parameters[row->sensor][row->axis]; k++) {
+        const int p = e->axis_parameter[row->sensor][row->axis][k];
+        double by = imki_axis_regressor(y, &x->input, problem->parameter[p]);
+        if (o->relative)
+            by -= imki_axis_regressor(&rest, &still, problem->parameter[p]);
+        add_global(row, p, by);
+    }
+}
+
 static int observation_rows(const imki_estimator *e, const imki_point *point, size_t index,
                             imki_row *rows)
 {
@@ -192,7 +213,6 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
             row->part = imki_part_of(e, sensor, axis);
             row->sensor = sensor;
             row->axis = axis;
-            row->residual = reading - y.value;
             row->sigma = e->sigma[index][sensor][axis];
             row->known_variance = sensor == IMK_GYRO ? e->known_variance[index][axis] : 0.0;
             if (e->added[sensor] > 0.0) {
@@ -200,10 +220,7 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
                 row->sigma = e->added[sensor];
             }
             row->locals = row->globals = 0;
-            for (int k = 0; k < e->axis_parameters[sensor][axis]; k++) {
-                const int p = e->axis_parameter[sensor][axis][k];
-                add_global(row, p, imki_axis_regressor(&y, &x.input, problem->parameter[p]));
-            }
+            predict(e, &problem->observation[index], &x, &y, reading, row);
             if (!x.gravity) {
                 by_rotations(&x, &y, first, row);
                 continue;

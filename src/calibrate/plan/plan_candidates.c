@@ -165,6 +165,8 @@ size_t imki_plan_candidates(const imk_plan_settings *settings, const imk_model *
     case IMK_PROCEDURE_FERRARIS:
         count = offer_poses(6, 1, gravity, step);
         return count + offer_rates(full, 1, by_hand(settings, rate), gravity, step + count);
+    case IMK_PROCEDURE_TURNS:
+        return offer_rates(full, 2, by_hand(settings, rate), gravity, step);
     case IMK_PROCEDURE_RATE_TABLE:
         count = settings->nonlinear ? offer_rates(table, 9, rate, gravity, step)
                                     : offer_rates(linear, 5, rate, gravity, step);
@@ -240,12 +242,13 @@ static void add_powers(term_list *list, bool wanted, int sensor, int q)
 imk_status imki_plan_free(const imk_plan_settings *s, imk_calibration *c, imk_error *error)
 {
     const imk_procedure p = s->procedure;
-    const bool accel = p != IMK_PROCEDURE_RATE_TABLE;
+    const bool turns = p == IMK_PROCEDURE_TURNS;
+    const bool accel = p != IMK_PROCEDURE_RATE_TABLE && !turns;
     const bool linear_accel = accel && p != IMK_PROCEDURE_THERMAL && p != IMK_PROCEDURE_SPIN;
     const bool gyro = p != IMK_PROCEDURE_SPIN;
     const bool turned = p == IMK_PROCEDURE_MULTIPOSITION || p == IMK_PROCEDURE_FERRARIS ||
-                        p == IMK_PROCEDURE_RATE_TABLE;
-    const bool forces = s->g_sensitivity && gyro && p != IMK_PROCEDURE_THERMAL;
+                        p == IMK_PROCEDURE_RATE_TABLE || turns;
+    const bool forces = s->g_sensitivity && gyro && p != IMK_PROCEDURE_THERMAL && !turns;
     const bool curved_accel =
         s->nonlinear && (p == IMK_PROCEDURE_TUMBLE || p == IMK_PROCEDURE_CENTRIFUGE);
     const bool curved_gyro = s->nonlinear && p == IMK_PROCEDURE_RATE_TABLE;
@@ -259,7 +262,8 @@ imk_status imki_plan_free(const imk_plan_settings *s, imk_calibration *c, imk_er
     add(&list, accel, IMK_ACCEL, IMK_MODEL_BIAS, 1);
     add(&list, linear_accel, IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, 1);
     add(&list, linear_accel, IMK_ACCEL, IMK_MODEL_MISALIGNMENT, 3);
-    add(&list, gyro, IMK_GYRO, IMK_MODEL_BIAS, 1);
+    /* Of turns the attitude limits the bias, and no longer test mends that. */
+    add(&list, gyro && !turns, IMK_GYRO, IMK_MODEL_BIAS, 1);
     add(&list, turned, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, 1);
     add(&list, turned, IMK_GYRO, IMK_MODEL_MISALIGNMENT, 3);
     add(&list, forces, IMK_GYRO, IMK_MODEL_G_SENSITIVITY, 3);

@@ -47,12 +47,16 @@ double imki_plan_floor_variance(const imk_model *model, imk_model_parameter para
 /* Time of the turn from a pose to the next [s]. */
 double imki_plan_turn_time(const imk_plan_settings *settings, const imk_model *model,
                            const double from[3], const double to[3]);
-/* How long a step is measured: a turn of a Ferraris session as long as it takes, others for `hold`
- * seconds. */
+/* A turn of ferraris or turns. */
+bool imki_plan_is_whole_turn(const imk_plan_settings *settings, const imk_plan_step *step);
+/* How long a step is measured: a whole turn as long as it takes, others for `hold` seconds. */
 double imki_plan_measured(const imk_plan_settings *settings, const imk_plan_step *step,
                           double hold);
 /* Do all steps share a mounting on a fixture that is not known exactly? */
 bool imki_plan_has_fixture(const imk_plan_settings *settings);
+/* 1 sigma of this mounting. How square the axes of turns are, repetitions do not show: of these the
+ * placement counts as one. [rad] */
+double imki_plan_fixture(const imk_plan_settings *settings);
 /* Forget the programme. */
 void imki_plan_clear(imki_plan *plan);
 /* Append a step, measured for `hold` seconds; `from`: the step before, for procedures in which

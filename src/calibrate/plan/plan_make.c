@@ -462,7 +462,7 @@ static imk_status plan(plan_job *job, double *hold)
     c->record[0] = &job->plan.record;
     c->record_count = 1;
     c->fixture_count = imki_plan_has_fixture(s);
-    c->fixture_sigma[0] = s->fixture_sigma;
+    c->fixture_sigma[0] = imki_plan_fixture(s);
     for (int sensor = 0; sensor < 2; sensor++) {
         const imk_triad *triad = imk_model_triad(&c->model, sensor);
         job->plan.record.axis_count[sensor] = triad->present && triad->axis_count == 3 ? 3 : 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A programme as a motion: turned to each pose about one axis, held for the time that is measured
  * and the margin, half of it before and half after. A rate is one of motion_script.h: it builds up
- * and dies away besides. A turn of a Ferraris session is whole and lies between two holds on its
+ * and dies away besides. A turn of ferraris and of turns is whole and lies between two holds on its
  * face, by which it is recognised. */
 #include "plan_internal.h"
 
@@ -22,7 +22,8 @@ static size_t put_step(const imk_plan_settings *settings, const imk_plan_step *s
                        imk_motion_step *motion_step)
 {
     const bool turns = s->action == IMK_PLAN_RATE;
-    const bool whole = turns && settings->procedure == IMK_PROCEDURE_FERRARIS;
+    const bool whole = imki_plan_is_whole_turn(settings, s);
+    const double angle = fabs(settings->turn_angle);
     const double before = whole   ? settings->hold_minimum + settings->margin
                           : turns ? 0.5 + 0.5 * settings->margin
                                   : s->duration + settings->margin;
@@ -30,11 +31,12 @@ static size_t put_step(const imk_plan_settings *settings, const imk_plan_step *s
     size_t count = 0;
     motion_step[count++] = hold;
     if (turns)
-        motion_step[count++] = (imk_motion_step){
-            .kind = IMK_STEP_ROTATE,
-            .axis = s->axis,
-            .amount = whole ? settings->turn_angle : s->rate * (s->duration + settings->margin),
-            .rate = fabs(s->rate)};
+        motion_step[count++] =
+            (imk_motion_step){.kind = IMK_STEP_ROTATE,
+                              .axis = s->axis,
+                              .amount = whole ? (s->rate < 0.0 ? -angle : angle)
+                                              : s->rate * (s->duration + settings->margin),
+                              .rate = fabs(s->rate)};
     if (whole)
         motion_step[count++] = hold;
     return count;

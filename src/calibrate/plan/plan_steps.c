@@ -32,16 +32,28 @@ double imki_plan_turn_time(const imk_plan_settings *settings, const imk_model *m
     return time;
 }
 
+bool imki_plan_is_whole_turn(const imk_plan_settings *settings, const imk_plan_step *step)
+{
+    return step->action == IMK_PLAN_RATE && (settings->procedure == IMK_PROCEDURE_FERRARIS ||
+                                             settings->procedure == IMK_PROCEDURE_TURNS);
+}
+
 double imki_plan_measured(const imk_plan_settings *settings, const imk_plan_step *step, double hold)
 {
-    const bool whole_turn =
-        settings->procedure == IMK_PROCEDURE_FERRARIS && step->action == IMK_PLAN_RATE;
-    return whole_turn ? fabs(settings->turn_angle / step->rate) : hold;
+    return imki_plan_is_whole_turn(settings, step) ? fabs(settings->turn_angle / step->rate) : hold;
+}
+
+double imki_plan_fixture(const imk_plan_settings *settings)
+{
+    const double placement =
+        settings->procedure == IMK_PROCEDURE_TURNS ? settings->placement_sigma : 0.0;
+    return sqrt(settings->fixture_sigma * settings->fixture_sigma + placement * placement);
 }
 
 bool imki_plan_has_fixture(const imk_plan_settings *settings)
 {
-    return settings->fixture_sigma > 0.0 && settings->procedure != IMK_PROCEDURE_MULTIPOSITION &&
+    return imki_plan_fixture(settings) > 0.0 &&
+           settings->procedure != IMK_PROCEDURE_MULTIPOSITION &&
            settings->procedure != IMK_PROCEDURE_THERMAL;
 }
 
@@ -57,13 +69,14 @@ static imk_observation observation_of(const imki_plan *plan, const imk_plan_step
     const imk_plan_settings *s = plan->settings;
     const imk_model *model = &plan->calibration->model;
     const double time = imki_plan_measured(s, step, hold);
+    const bool placed = s->placement_sigma > 0.0 && s->procedure != IMK_PROCEDURE_TURNS;
     imk_observation o = {.record = 0,
                          .temperature = step->temperature,
                          .placement_sigma = s->placement_sigma,
                          .fixture = imki_plan_has_fixture(s) ? 0 : -1};
     o.knowledge = s->procedure == IMK_PROCEDURE_MULTIPOSITION
                       ? IMK_INPUT_GRAVITY
-                      : (s->placement_sigma > 0.0 ? IMK_INPUT_PLACED : IMK_INPUT_KNOWN);
+                      : (placed ? IMK_INPUT_PLACED : IMK_INPUT_KNOWN);
     if (step->action == IMK_PLAN_RATE)
         o.rate[step->axis] = step->rate;
     for (int i = 0; i < 3; i++)
@@ -78,7 +91,7 @@ static imk_observation observation_of(const imki_plan *plan, const imk_plan_step
         }
     }
     /* The angle of a turn ends as well as the unit is put down. */
-    if (step->action == IMK_PLAN_RATE && s->procedure == IMK_PROCEDURE_FERRARIS) {
+    if (imki_plan_is_whole_turn(s, step)) {
         double *sigma = &o.sigma[IMK_GYRO][step->axis];
         *sigma = sqrt(*sigma * *sigma + s->placement_sigma * s->placement_sigma / (time * time));
     }

@@ -27,6 +27,7 @@ static const procedure_entry procedures[IMK_PROCEDURES] = {
     {"centrifuge", imki_reference_observe, imki_reference_workspace},
     {"spin", imki_reference_observe, imki_reference_workspace},
     {"thermal", imki_thermal_observe, imki_thermal_workspace},
+    {"turns", imki_turns_observe, imki_turns_workspace},
 };
 
 static bool exists(imk_procedure procedure)
@@ -56,7 +57,8 @@ imk_procedure_settings imk_procedure_default(imk_procedure procedure)
                                        .scale_temperature_order = -1,
                                        .reference_temperature = (double)NAN};
     /* Faces of a housing are square to some tenths of a degree; a dividing head is exact. */
-    if (procedure == IMK_PROCEDURE_SIXPOSITION || procedure == IMK_PROCEDURE_FERRARIS)
+    if (procedure == IMK_PROCEDURE_SIXPOSITION || procedure == IMK_PROCEDURE_FERRARIS ||
+        procedure == IMK_PROCEDURE_TURNS)
         settings.placement_sigma = 0.1 * DEGREE;
     return settings;
 }

@@ -41,7 +41,14 @@ imk_status imki_thermal_observe(const imki_procedure_call *call);
 size_t imki_thermal_workspace(const imk_test_record *record,
                               const imk_procedure_settings *settings);
 
+imk_status imki_turns_observe(const imki_procedure_call *call);
+size_t imki_turns_workspace(const imk_test_record *record, const imk_procedure_settings *settings);
+
 /* ---- procedure_shared.c ---- */
+
+/* The mounting of a log's unit on its fixture, if it is not exact: another one. @return its index;
+ * -1: exact; -2: there is no room */
+int imki_add_fixture(const imki_procedure_call *call);
 
 /* Make every element of a term free on all axes of a sensor that the record has (the diagonal of
  * misalignment aside; of accelerometers only what the frame leaves when `attitudes_known` is

@@ -5,6 +5,17 @@
 #include <math.h>
 #include <string.h>
 
+int imki_add_fixture(const imki_procedure_call *call)
+{
+    imk_calibration *c = call->calibration;
+    if (!(call->settings->fixture_sigma > 0.0))
+        return -1;
+    if (c->fixture_count >= IMK_FIXTURES_MAX)
+        return -2;
+    c->fixture_sigma[c->fixture_count] = call->settings->fixture_sigma;
+    return (int)c->fixture_count++;
+}
+
 /* Elements of the misalignments or cross-axis terms of accelerometers that a frame leaves free; a
  * symmetric one ties the pairs, so that all have a value. */
 static bool frame_leaves(imk_triad_frame frame, int axis, int element)

@@ -84,17 +84,6 @@ static void set_readings(const imki_procedure_call *call, const imk_static_inter
     }
 }
 
-static int add_fixture(const imki_procedure_call *call)
-{
-    imk_calibration *c = call->calibration;
-    if (!(call->settings->fixture_sigma > 0.0))
-        return -1;
-    if (c->fixture_count >= IMK_FIXTURES_MAX)
-        return -2;
-    c->fixture_sigma[c->fixture_count] = call->settings->fixture_sigma;
-    return (int)c->fixture_count++;
-}
-
 /* Smallest eigenvalue of the mean outer product of the directions of holds: of axes, the smallest
  * share of the holds. */
 static double spread_of(const imki_session_stretches *list)
@@ -117,7 +106,7 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_sessio
                            (double)c->observation_capacity,
                            "provide room for one observation per hold and turn");
     }
-    *fixture = add_fixture(call);
+    *fixture = imki_add_fixture(call);
     if (*fixture == -2)
         return imk_error_set(call->error, IMK_ERROR_RANGE, "fixture", NULL,
                              "at most 8 mountings in one solution");

@@ -19,12 +19,14 @@ bool imk_procedure_is_known(imk_procedure procedure)
 }
 
 /* Take away the diagnostics whether holds can be found where sections name them: the procedure
- * counts the faces. */
+ * counts the faces, or turns. */
 static void diagnostics_of_named_holds(imk_calibrate_record *log)
 {
     enum { FACES = 6 };
-    if ((log->procedure != IMK_PROCEDURE_SIXPOSITION && log->procedure != IMK_PROCEDURE_FERRARIS) ||
-        !log->record.section || log->record.section_count < FACES)
+    const bool faces =
+        log->procedure == IMK_PROCEDURE_SIXPOSITION || log->procedure == IMK_PROCEDURE_FERRARIS;
+    if (!(faces && log->record.section_count >= FACES) &&
+        !(log->procedure == IMK_PROCEDURE_TURNS && log->record.section_count > 0))
         return;
     size_t kept = 0;
     for (size_t i = 0; i < log->diagnostic_count; i++)

@@ -69,7 +69,7 @@ static imk_status set_place(imk_calibrate_log *b, imk_error *error)
 static bool knows_force(imk_procedure procedure)
 {
     return imk_procedure_is_known(procedure) && procedure != IMK_PROCEDURE_RATE_TABLE &&
-           procedure != IMK_PROCEDURE_SPIN;
+           procedure != IMK_PROCEDURE_SPIN && procedure != IMK_PROCEDURE_TURNS;
 }
 
 static imk_status choose_frame(imk_calibrate_log *b, imk_error *error)
@@ -308,11 +308,26 @@ static void tell_gravity(imk_calibrate_log *b)
     }
 }
 
+/* Turns take no notice of accelerometers: they are none of these records. */
+static void leave_out_accelerometers(imk_calibrate_log *b)
+{
+    for (size_t k = 0; k < b->count; k++) {
+        imk_test_record *record = &b->record[k].record;
+        if (b->record[k].procedure != IMK_PROCEDURE_TURNS || record->axis_count[IMK_GYRO] == 0 ||
+            record->axis_count[IMK_ACCEL] == 0)
+            continue;
+        record->axis_count[IMK_ACCEL] = 0;
+        imki_find(&b->findings, IMK_FINDING_NOTE, "turns_without_accel", b->record[k].path, 0,
+                  NULL);
+    }
+}
+
 imk_status imki_know_before(imk_calibrate_log *b, imk_error *error)
 {
     imk_model *model = &b->calibration->model;
     imk_status status = IMK_OK;
     b->failed = b->count;
+    leave_out_accelerometers(b);
     if (b->settings.model)
         *model = *b->settings.model;
     if (model->residual_of[0])

@@ -101,10 +101,10 @@ size_t imki_axes_text(uint64_t classes, char *text, size_t size)
     return count;
 }
 
-static bool has_ferraris(const imk_calibrate_log *b)
+static bool has(const imk_calibrate_log *b, imk_procedure procedure)
 {
     for (size_t k = 0; k < b->count; k++)
-        if (b->record[k].procedure == IMK_PROCEDURE_FERRARIS)
+        if (b->record[k].procedure == procedure)
             return true;
     return false;
 }
@@ -122,7 +122,8 @@ size_t imki_turns_text(const imk_calibrate_log *b, char *text, size_t size)
     imki_text list = {0};
     size_t count = 0;
     const int axes = b->result ? b->result->model.gyro.axis_count : 0;
-    for (int i = 0; i < axes && has_ferraris(b); i++)
+    const bool labelled = has(b, IMK_PROCEDURE_TURNS);
+    for (int i = 0; i < axes && (labelled || has(b, IMK_PROCEDURE_FERRARIS)); i++)
         if (is_opposite(b, i))
             imki_text_add(&list, "%sgyro_%c", count++ ? " and " : "", imk_axis_letter(i));
     if (count > 0)
@@ -133,8 +134,9 @@ size_t imki_turns_text(const imk_calibrate_log *b, char *text, size_t size)
                  "gyro must read positive",
                  count == (size_t)axes || !list.bytes ? "all gyros" : list.bytes,
                  count == 1 ? "s" : "",
-                 count == (size_t)axes ? "change the sign of --turn-angle"
-                                       : "all turns must go the same way");
+                 labelled                ? "correct the signs in their labels"
+                 : count == (size_t)axes ? "change the sign of --turn-angle"
+                                         : "all turns must go the same way");
     free(list.bytes);
     return count;
 }

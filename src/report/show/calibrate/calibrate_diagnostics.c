@@ -98,7 +98,8 @@ static bool diagnostic_matters(const imk_calibrate_record *log,
     const bool takes_holds = looks_for_holds || log->procedure == IMK_PROCEDURE_SIXPOSITION;
     switch (diagnostic->kind) {
     case IMK_DIAGNOSTIC_NEVER_STATIC:
-        return takes_holds || log->procedure == IMK_PROCEDURE_THERMAL;
+        return takes_holds || log->procedure == IMK_PROCEDURE_THERMAL ||
+               log->procedure == IMK_PROCEDURE_TURNS;
     case IMK_DIAGNOSTIC_NEVER_MOVES:
         return takes_holds;
     case IMK_DIAGNOSTIC_FEW_POSES:
@@ -222,7 +223,7 @@ static void add_placements(const imk_calibrate_log *b, imk_verdict *v)
 {
     const double by_chance = 1e-3, degrees = 57.29577951308232;
     const imk_group_fit *fit = b->result ? &b->result->placement : NULL;
-    if (!fit || fit->count == 0)
+    if (!fit || fit->count == 0 || imki_has_only_turns(b))
         return;
     if (!(fit->degrees_of_freedom >= 3))
         add(v, imki_calibrate_say(
@@ -301,6 +302,7 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
         }
         add_undetermined(b, log, &v);
         add_thermal(&v, log);
+        imki_turns_verdict(b, log, &v);
     }
     add_opposite_turns(b, &v);
     const size_t of_logs = v.count;

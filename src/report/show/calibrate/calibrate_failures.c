@@ -53,7 +53,8 @@ static size_t too_short(const message *to, const imk_calibrate_record *log, cons
     for (size_t k = 0; k < 3; k++)
         if (strcmp(error->field, things[k]) == 0)
             return say(to, "%s: %s needs at least %g %s, found %g%s%s", log->path, name,
-                       error->limit, many[k], error->value, due[0] ? ": " : "", due);
+                       error->limit, error->limit > 1 ? many[k] : things[k], error->value,
+                       due[0] ? ": " : "", due);
     if (strcmp(error->field, "temperature") == 0)
         return say(to,
                    "%s: the temperature varies by %.3g K; at least %.3g K are needed to estimate "

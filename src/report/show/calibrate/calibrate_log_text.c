@@ -102,9 +102,8 @@ static imki_calibrate_message rate_unit(const imk_calibrate_log *b, const imk_ca
     }
     return imki_calibrate_say(
         IMK_FINDING_FAILURE, "rate_unit",
-        "the gyros show turns %.4g times as large as the accelerometers show: the columns "
-        "look like %s; %s %s",
-        ratio, unit,
+        "the gyros show turns %.4g times as large as %s: the columns look like %s; %s %s", ratio,
+        log->procedure == IMK_PROCEDURE_TURNS ? "stated" : "the accelerometers show", unit,
         unit_of_column(log, 0)[0] ? "correct the unit in the header to" : "add --gyro-unit", unit);
 }
 

@@ -38,7 +38,8 @@ static bool is_of_angles(const imk_calibrate_log *b)
 {
     for (size_t k = 0; k < b->count; k++)
         if (b->record[k].procedure < IMK_PROCEDURE_RATE_TABLE ||
-            b->record[k].procedure == IMK_PROCEDURE_THERMAL)
+            b->record[k].procedure == IMK_PROCEDURE_THERMAL ||
+            b->record[k].procedure == IMK_PROCEDURE_TURNS)
             return true;
     return false;
 }
@@ -53,6 +54,15 @@ static void add_rate(const imk_calibrate_log *b, double ratio, imki_text *to)
               "times time: check %s)",
               ratio / record->dt, 1 / record->dt,
               record->time ? "the times and their unit" : "--rate");
+}
+
+static void add_angle(const imk_calibrate_log *b, double ratio, imki_text *to)
+{
+    bool stated = false;
+    for (size_t k = 0; k < b->count; k++)
+        stated = stated || b->record[k].procedure == IMK_PROCEDURE_TURNS;
+    if (stated)
+        add_cause(to, "turns by %.3g times the angle stated (--turn-angle, or the labels)", ratio);
 }
 
 static void add_unit(int sensor, double ratio, imki_text *to)
@@ -94,6 +104,8 @@ void imki_scale_causes(const imk_calibrate_log *b, int sensor, double ratio, boo
     add_range(b, sensor, ratio, to);
     if (all_axes && sensor == 0 && ratio > 0)
         add_rate(b, ratio, to);
+    if (sensor == 0 && ratio > 0)
+        add_angle(b, ratio, to);
     if (to->size > before)
         return;
     add_cause(to, "a wrong unit or sensitivity%s",

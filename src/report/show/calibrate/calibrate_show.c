@@ -63,6 +63,8 @@ static void show_observations(const imk_calibrate_log *b, imk_result *result)
     imk_result_array(result, "poses");
     for (size_t k = 0; b->result && k < c->observation_count; k++) {
         const imk_observation *o = &c->observation[k];
+        if (imki_is_of_turns(b, o))
+            continue;
         const imk_test_record *record = c->record[o->record];
         imk_result_object(result, NULL);
         imk_result_text(result, "log", record->name);
@@ -228,6 +230,7 @@ static void show_data(const imk_calibrate_log *b, const imk_verdict *v, const ch
     show_parameters(b->result, result);
     show_fit(b->result, result);
     show_observations(b, result);
+    imki_show_turns(b, result);
     show_runs(b, result);
     show_closed_form(b, result);
     imk_result_end(result);

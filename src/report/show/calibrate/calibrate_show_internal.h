@@ -45,6 +45,15 @@ void imki_thermal_table(const imk_calibrate_record *log, int sensor, bool brief,
                         imk_result *result);
 void imki_fit_table(const imk_calibrate_log *b, imk_result *result);
 void imki_pose_table(const imk_calibrate_log *b, imk_result *result);
+/* calibrate_known_turns.c: of logs of the procedure turns, the table of all turns, the same as
+ * data, and messages. */
+bool imki_is_of_turns(const imk_calibrate_log *b, const imk_observation *o);
+bool imki_has_only_turns(const imk_calibrate_log *b);
+void imki_turn_table(const imk_calibrate_log *b, imk_result *result);
+void imki_turn_fit(const imk_calibrate_log *b, imk_table *table); /* a row of the fit */
+void imki_show_turns(const imk_calibrate_log *b, imk_result *result);
+void imki_turns_verdict(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                        imk_verdict *verdict);
 /* calibrate_figure.c */
 void imki_calibrate_figure(const imk_calibrate_log *b, imk_result *result);
 

@@ -135,7 +135,7 @@ void imki_fit_table(const imk_calibrate_log *b, imk_result *result)
     imk_table_row(table, "fit\tobserved\tleft out\tchi^2 / dof\t1 sigma x\tresiduals (rms)");
     for (int g = 0; g < IMK_GROUPS; g++) {
         const imk_group_fit *fit = &b->result->group[g];
-        if (fit->count == 0)
+        if (fit->count == 0 || (g == IMK_GROUP_GYRO && imki_has_only_turns(b)))
             continue;
         const imk_unit unit = imk_unit_readable(imk_unit_of(si[g]).dimension, fit->rms);
         imk_table_row(table, "%s\t%zu\t%zu", names[g], fit->count, fit->refused);
@@ -145,6 +145,7 @@ void imki_fit_table(const imk_calibrate_log *b, imk_result *result)
             imk_table_add(table, "-");
         imk_table_add(table, "%.3g\t%.4g %s", fit->factor, fit->rms / unit.scale, unit.text);
     }
+    imki_turn_fit(b, table);
     imk_result_gap(result);
 }
 
@@ -175,6 +176,9 @@ static void add_finite(imk_table *table, const char *format, double value)
 void imki_pose_table(const imk_calibrate_log *b, imk_result *result)
 {
     const bool several = b->count > 1;
+    imki_turn_table(b, result);
+    if (imki_has_only_turns(b))
+        return;
     imk_table *table = imk_result_table(result, 0);
     imk_table_row(table,
                   "%s\tfrom [s]\tlength [s]\tforce along\t[degC]\taccel [mg]\tgyro [deg/s]\t"
@@ -182,6 +186,8 @@ void imki_pose_table(const imk_calibrate_log *b, imk_result *result)
                   several ? "log" : "");
     for (size_t k = 0; k < b->calibration->observation_count; k++) {
         const imk_observation *o = &b->calibration->observation[k];
+        if (imki_is_of_turns(b, o))
+            continue;
         const imk_test_record *record = b->calibration->record[o->record];
         const double *up = o->knowledge == IMK_INPUT_GRAVITY ? o->vertical : o->force;
         const double norm = imki_norm3(up);

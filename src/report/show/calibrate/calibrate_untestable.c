@@ -35,9 +35,19 @@ static void add_of_gyros(const imk_calibrate_log *b, imki_text *list)
     if (has(b, IMK_PROCEDURE_RATE_TABLE, IMK_PROCEDURE_SPIN, false))
         add_item(list, "an error of the reference (it goes into bias, scale factor and "
                        "misalignment)");
-    else if (has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_FERRARIS, false))
+    else if (has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_FERRARIS, false) ||
+             has(b, IMK_PROCEDURE_TURNS, IMK_PROCEDURE_TURNS, false))
         add_item(list, "a sampling rate that is some per cent off (the scale factors of all "
                        "gyros change by as much)");
+    if (b->nominal[0] && imki_has_only_turns(b))
+        add_item(list, "turns by another angle than stated (the sensitivity found is wrong by as "
+                       "much)");
+    bool read = false;
+    for (size_t k = 0; k < b->count; k++)
+        read = read || b->record[k].findings.known_turns.direction_read;
+    if (read)
+        add_item(list, "the sign of a gyro (where no label states the direction of a turn, it is "
+                       "that which its gyro reads)");
 }
 
 static void add_of_gravity(const imk_calibrate_log *b, imki_text *list)
