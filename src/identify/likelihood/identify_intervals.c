@@ -83,8 +83,8 @@ static void average_with_quantization(imki_work *w, imk_estimate *e)
     const double chosen = fit->log_likelihood;
     const bool on = !fit->active[IMK_NOISE_QUANTIZATION];
     imki_quantization_switch(w);
-    const double ahead = chosen - fit->log_likelihood + (on ? needed : -needed);
-    if (!(drop - ahead > 0.01 * drop))
+    const double behind = chosen - fit->log_likelihood, ahead = behind + (on ? needed : -needed);
+    if (!(ahead < drop && behind < drop + 1)) /* far from the other, whose centre is outside */
         return;
     const double weight = 1 / (1 + exp(-ahead)), other = fit->amount[IMK_NOISE_WHITE];
     e->free_value = sqrt(weight * e->free_value * e->free_value + (1 - weight) * other);
