@@ -9,6 +9,7 @@
  * and a step is (H + lambda diag H)^-1 g, lambda raised until it climbs [MARQUARDT1963]. */
 #include "joint_shape_internal.h"
 
+#include "imukit/distributions.h"
 #include "imukit/linear_algebra.h"
 
 #include <math.h>
@@ -316,6 +317,15 @@ static bool variances(const imki_joint_fit *j, size_t count, size_t wanted, doub
     return true;
 }
 
+/* Side of an interval, once the shapes have multiplied the variance by a factor: what they add is
+ * independent of what quantization and other sets of terms have added already. `half` is the side
+ * that the variance alone gives. */
+static double widened(double side, double half, double factor)
+{
+    const double own = fmin(half, side);
+    return sqrt(side * side + (factor - 1) * own * own);
+}
+
 void imki_identify_widen(imki_work *w, imk_identification *result)
 {
     imki_joint_fit joint = {.w = w, .result = result}, *j = &joint;
@@ -327,12 +337,13 @@ void imki_identify_widen(imki_work *w, imk_identification *result)
     if (amounts == j->count || !variances(j, amounts, random, fixed) ||
         !variances(j, j->count, random, free))
         return;
+    const double quantile = imk_chi_square_quantile(w->settings->confidence, 1);
     for (size_t i = 0; i < random; i++) {
         imk_estimate *e = &result->term[j->parameter[i].index];
-        const double factor = free[i] > fixed[i] ? sqrt(free[i] / fixed[i]) : 1;
-        const double centre = e->free_value;
-        e->sigma *= factor;
-        e->lower = fmax(0, centre - factor * (centre - e->lower));
-        e->upper = centre + factor * (e->upper - centre);
+        const double factor = free[i] > fixed[i] ? free[i] / fixed[i] : 1;
+        const double half = 0.5 * e->free_value * sqrt(quantile * fixed[i]);
+        e->sigma *= sqrt(factor);
+        e->lower = fmax(0, e->free_value - widened(e->free_value - e->lower, half, factor));
+        e->upper = e->free_value + widened(e->upper - e->free_value, half, factor);
     }
 }

@@ -49,11 +49,14 @@ bool imki_allan_is_likely(double ratio, double edf, double tail)
     return ratio <= 1 + sqrt(2 / edf) * above / sqrt(2 * degrees);
 }
 
-static bool agrees(const imki_work *w, const imk_allan_noise *noise, size_t count,
+/* Rounding after a filter has independent errors, and adds to the expectation only: with them the
+ * variance scatters a little less than it may here. */
+static bool agrees(const imki_work *w, const imk_allan_noise *noise, double rounding, size_t count,
                    const imk_allan_point *point)
 {
     const double dt = w->settings->dt, expected = imk_allan_noise_variance(noise, dt, point->m);
-    const double ratio = point->deviation * point->deviation / expected;
+    const double ratio = point->deviation * point->deviation /
+                         (expected + imk_white_sampled_allan_variance(rounding, dt, point->m));
     if (fabs(sqrt(ratio) - 1) < MATTERS)
         return true;
     const size_t stride = w->block > 0 && point->m >= w->block_from ? w->block : 1;
@@ -68,7 +71,7 @@ void imki_agreement(const imki_work *w, const imk_identification *result, size_t
     const imk_allan_noise noise = noise_of(result);
     size_t first = 0, length = 0, run = 0;
     for (size_t i = 0; i < count; i++) {
-        run = agrees(w, &noise, count, &points[i]) ? run + 1 : 0;
+        run = agrees(w, &noise, result->rounding, count, &points[i]) ? run + 1 : 0;
         if (run > length) {
             length = run;
             first = i + 1 - run;

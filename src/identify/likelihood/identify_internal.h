@@ -250,6 +250,8 @@ imki_interval_profile imki_interval_profile_at(const imki_work *w, int held, dou
                                                double *centre, double *step);
 /* White noise, bias instability, random walk and a term free as well; everything fitted again. */
 void imki_intervals_free(imki_work *w, int term);
+/* Quantization out of the fit, or into it; everything fitted again. */
+void imki_quantization_switch(imki_work *w);
 
 /* alternative_intervals.c: intervals that hold for the other sets of terms, too, that explain the
  * record about as well; the fit is left as it was. */

@@ -62,36 +62,32 @@ static void interval_at(const imki_work *w, int held, double drop, imk_estimate 
         centre == 0 && !ramp ? 0 : imki_interval_end(&p, centre, -step, ramp ? -HUGE_VAL : 0);
 }
 
-/* Likelihood that one more parameter costs, where the interval covers both sets [AKAIKE1978]. */
-static const double COST = 1;
-
-/* Whether quantization was called present, just or just not, moves white noise by more than its
- * interval is wide. Where the choice was close, the interval covers both: of the other model what
- * lies within the same drop of the likelihood less penalty; and its centre is the mean of the two,
- * each with the likelihood less penalty as the logarithm of its weight [AKAIKE1978]. */
-static void widen_for_quantization(imki_work *w, double drop, imk_estimate *e)
+void imki_quantization_switch(imki_work *w)
 {
     imki_fit *fit = w->fit;
-    const double needed = 0.5 * imk_chi_square_quantile(1 - 2 * w->settings->significance, 1);
-    const double chosen = fit->log_likelihood;
     const bool on = !fit->active[IMK_NOISE_QUANTIZATION];
     fit->active[IMK_NOISE_QUANTIZATION] = on;
     fit->amount[IMK_NOISE_QUANTIZATION] =
         on ? 0.1 * fit->amount[IMK_NOISE_WHITE] * w->bands->dt * w->bands->dt : 0;
-    const double other = imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
-    const double ahead = chosen - other + (on ? needed : -needed);
-    const double left = drop - (chosen - other + (on ? COST : -COST));
-    imk_estimate too;
-    if (!(left > 0.01 * drop))
+    imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
+}
+
+/* Whether quantization was called present, just or just not, moves white noise by more than its
+ * interval is wide. Where the choice was close, the centre is the mean of the two, each with the
+ * likelihood less penalty as the logarithm of its weight [AKAIKE1978]. */
+static void average_with_quantization(imki_work *w, imk_estimate *e)
+{
+    imki_fit *fit = w->fit;
+    const double drop = 0.5 * imk_chi_square_quantile(w->settings->confidence, 1);
+    const double needed = 0.5 * imk_chi_square_quantile(1 - 2 * w->settings->significance, 1);
+    const double chosen = fit->log_likelihood;
+    const bool on = !fit->active[IMK_NOISE_QUANTIZATION];
+    imki_quantization_switch(w);
+    const double behind = chosen - fit->log_likelihood, ahead = behind + (on ? needed : -needed);
+    if (!(ahead < drop && behind < drop + 1)) /* far from the other, whose centre is outside */
         return;
-    interval_at(w, IMK_NOISE_WHITE, fmin(left, drop), &too);
-    e->lower = fmin(e->lower, too.lower);
-    e->upper = fmax(e->upper, too.upper);
-    if (!(drop - ahead > 0.01 * drop))
-        return;
-    const double weight = 1 / (1 + exp(-ahead));
-    e->free_value = sqrt(weight * e->free_value * e->free_value +
-                         (1 - weight) * too.free_value * too.free_value);
+    const double weight = 1 / (1 + exp(-ahead)), other = fit->amount[IMK_NOISE_WHITE];
+    e->free_value = sqrt(weight * e->free_value * e->free_value + (1 - weight) * other);
 }
 
 /* Intervals are those of the model in which white noise, bias instability, random walk and the term
@@ -106,7 +102,7 @@ static void store_interval(imki_work *w, imk_identification *result, int term, d
     interval_at(w, term == IMK_NOISE_RAMP ? IMKI_HELD_RAMP : term, drop, e);
     if (term == IMK_NOISE_WHITE) {
         imki_fit_restore(w->fit, w->bands, &freed);
-        widen_for_quantization(w, drop, e);
+        average_with_quantization(w, e);
     }
     if (!e->present && term == IMK_NOISE_RAMP)
         e->upper = fmax(fabs(e->lower), fabs(e->upper));

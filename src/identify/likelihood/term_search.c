@@ -76,20 +76,23 @@ static double ramp_penalty(const search *s)
     return 0.5 * (v + 1) / v * ratio * ratio * z * z;
 }
 
+static size_t count_of(const imki_amounts *set)
+{
+    size_t count = 0;
+    for (size_t i = IMKI_FIRST_GAUSS_MARKOV; i < IMKI_FIRST_RESONANCE; i++)
+        count += set->active[i] && set->amount[i] > 0;
+    return count < IMKI_ALTERNATIVE_COUNTS ? count : IMKI_ALTERNATIVE_COUNTS - 1;
+}
+
 static void remember(search *s)
 {
     const imki_fit *fit = s->fit;
-    size_t count = 0;
-    for (size_t i = 0; i < IMKI_GAUSS_MARKOV_MAX; i++) {
-        const size_t slot = IMKI_FIRST_GAUSS_MARKOV + i;
-        count += fit->active[slot] && fit->amount[slot] > 0;
-    }
-    if (count >= IMKI_ALTERNATIVE_COUNTS)
-        count = IMKI_ALTERNATIVE_COUNTS - 1;
+    const imki_amounts set = imki_fit_keep(fit);
+    const size_t count = count_of(&set);
     double *best = &s->met->log_likelihood[fit->ramp_active][count];
     if (fit->log_likelihood > *best) {
         *best = fit->log_likelihood;
-        s->met->set[fit->ramp_active][count] = imki_fit_keep(fit);
+        s->met->set[fit->ramp_active][count] = set;
     }
 }
 
@@ -222,16 +225,21 @@ static double improve(search *s)
 /* Gain at which a set is remembered, though it will not be chosen. */
 static const double WORTH_MEETING = 0.5;
 
+static void set_slow(search *s, bool on)
+{
+    static const int slow[] = {IMK_NOISE_BIAS_INSTABILITY, IMK_NOISE_RANDOM_WALK};
+    for (size_t i = 0; i < 2; i++)
+        if (on)
+            add(s, slow[i]);
+        else
+            drop(s->fit, slow[i]);
+}
+
 /* With one more Gauss-Markov term, from the present set with or without bias instability and random
  * walk, which together take the place of a Gauss-Markov term, or it theirs. */
 static double with_gauss_markov(search *s, bool five_terms)
 {
-    static const int slow[] = {IMK_NOISE_BIAS_INSTABILITY, IMK_NOISE_RANDOM_WALK};
-    for (size_t i = 0; i < 2; i++)
-        if (five_terms)
-            add(s, slow[i]);
-        else
-            drop(s->fit, slow[i]);
+    set_slow(s, five_terms);
     add(s, IMK_NOISE_WHITE);
     imki_gauss_markov_settle(s->fit, s->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
     const double before = s->fit->log_likelihood;
@@ -239,6 +247,29 @@ static double with_gauss_markov(search *s, bool five_terms)
         return -HUGE_VAL;
     const bool hopeful = s->fit->log_likelihood > before + 0.5 * s->penalties->term;
     return hopeful ? improve(s) : score(s);
+}
+
+/* Gain of a Gauss-Markov term that was not chosen, from which on a further one may take the place
+ * of what was. With 1, bias instability that is there could be two such terms in 45 % of records of
+ * N and B, with 2 in 15 % (experiments/coverage_mixtures.c). */
+static const double WORTH_FOLLOWING = 2;
+
+/* Bias instability can stand for two Gauss-Markov terms of which one alone does not replace it:
+ * then neither is chosen, and two would not be met. */
+static void meet_further(search *s, const imki_amounts *chosen)
+{
+    const size_t count = count_of(chosen);
+    const double *met = s->met->log_likelihood[0];
+    if (count + 2 >= IMKI_ALTERNATIVE_COUNTS || !(met[count + 1] > met[count] + WORTH_FOLLOWING))
+        return;
+    const imki_amounts start = s->met->set[0][count + 1];
+    for (int five_terms = 0; five_terms < 2; five_terms++) {
+        imki_fit_restore(s->fit, s->bands, &start);
+        set_slow(s, five_terms > 0);
+        imki_gauss_markov_settle(s->fit, s->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
+        if (imki_gauss_markov_add(s->fit, s->bands, 0))
+            remember(s);
+    }
 }
 
 double imki_terms_choose(imki_fit *fit, const imki_bands *bands, const imki_penalties *penalties,
@@ -262,6 +293,7 @@ double imki_terms_choose(imki_fit *fit, const imki_bands *bands, const imki_pena
         if (!(best > before))
             break;
     }
+    meet_further(&s, &chosen);
     imki_fit_restore(fit, bands, &chosen);
     return best;
 }

@@ -113,18 +113,24 @@ static imk_identification identify_passing(const double *x, size_t n)
 
 /* Both spectra hold the same noise, but coefficients near f_c are not the same ones: estimates may
  * differ by a part of their standard deviation, 0.2 of it as a limit; that is a property of these
- * records, not of chance. */
-static void check_alike(const truth *t, uint64_t seed)
+ * records, not of chance. Another set of terms may be just within reach of one and out of reach of
+ * the other: then a term is ambiguous in one only, and its interval begins at 0 there.
+ * @return how many are */
+static size_t check_alike(const truth *t, uint64_t seed)
 {
     double *x = make_record(t, N, seed);
     const imk_identification whole = identify_whole(x, N), passing = identify_passing(x, N);
     free(x);
+    size_t edges = 0;
     for (int term = 0; term < IMK_NOISE_TERMS; term++) {
         const imk_estimate *a = &whole.term[term], *b = &passing.term[term];
         const double sigma = a->present ? (a->upper - a->lower) / 3.92 : a->upper / 1.96;
         assert_int_equal(a->present, b->present);
         CHECK_CLOSE(b->value, a->value, 0.2 * sigma);
-        CHECK_CLOSE(b->lower, a->lower, 0.3 * sigma);
+        if ((whole.ambiguous ^ passing.ambiguous) >> term & 1)
+            edges++;
+        else
+            CHECK_CLOSE(b->lower, a->lower, 0.3 * sigma);
         CHECK_CLOSE(b->upper, a->upper, 0.3 * sigma);
     }
     CHECK_RELATIVE(passing.mean, whole.mean, 1e-10);
@@ -140,21 +146,22 @@ static void check_alike(const truth *t, uint64_t seed)
         CHECK_RELATIVE(passing.resonance[i].frequency, whole.resonance[i].frequency, 0.01);
         CHECK_RELATIVE(passing.resonance[i].sigma, whole.resonance[i].sigma, 0.05);
     }
+    return edges;
 }
 
 static void test_like_the_whole(void **state)
 {
     (void)state;
-    check_alike(&usual, 2);
-    check_alike(&usual, 3);
+    size_t edges = check_alike(&usual, 2) + check_alike(&usual, 3);
     truth t = usual;
     t.filter = (imk_low_pass){12, 0.6};
-    check_alike(&t, 4);
+    edges += check_alike(&t, 4);
     t = usual;
     t.resonance = (imk_resonance){2, 20, 15};
-    check_alike(&t, 5);
+    edges += check_alike(&t, 5);
     t = (truth){.white = 1, .bias_instability = 0.2, .quantization = 0.05};
-    check_alike(&t, 6);
+    edges += check_alike(&t, 6);
+    assert_true(edges <= 1);
 }
 
 /* Stated: the amplitude to some per cent, the frequency to a quarter of the distance of a segment's
