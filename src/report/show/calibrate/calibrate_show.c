@@ -66,8 +66,14 @@ static void show_observations(const imk_calibrate_log *b, imk_result *result)
         const imk_test_record *record = c->record[o->record];
         imk_result_object(result, NULL);
         imk_result_text(result, "log", record->name);
-        imk_result_quantity(result, "begin", imk_test_record_time(record, o->begin), "s");
-        imk_result_quantity(result, "length", (double)(o->end - o->begin) * record->dt, "s");
+        if (record->means) {
+            imk_result_count(result, "row", (long long)o->begin + 1);
+            if (imki_label_of(record, o->begin))
+                imk_result_text(result, "label", imki_label_of(record, o->begin));
+        } else {
+            imk_result_quantity(result, "begin", imk_test_record_time(record, o->begin), "s");
+            imk_result_quantity(result, "length", (double)(o->end - o->begin) * record->dt, "s");
+        }
         imk_result_numbers(result, "force", 3,
                            o->knowledge == IMK_INPUT_GRAVITY ? o->vertical : o->force);
         imk_result_numbers(result, "accel_residual", 3, o->residual[1]);
@@ -196,7 +202,10 @@ static void show_inputs(const imk_calibrate_log *b, imk_result *result)
         imk_result_text(result, "procedure", procedure_name(b, log));
         imk_result_count(result, "rows", (long long)log->record.count);
         imk_result_count(result, "left_out", (long long)log->dropped);
-        imk_result_quantity(result, "interval", log->record.dt, "s");
+        if (log->record.means)
+            imk_result_flag(result, "pose_means", true);
+        else
+            imk_result_quantity(result, "interval", log->record.dt, "s");
         imk_result_count(result, "intervals_at_rest", (long long)log->interval_count);
         show_thermal(log->thermal, result);
         imk_result_end(result);
