@@ -30,8 +30,10 @@ imk_status imki_take_reference(const imk_calibrate_log_settings *s, imk_calibrat
 imk_status imki_take_means(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
                            imk_error *error);
 
-/* calibrate_observe.c: where a log stands still, what its procedure observes; then the solution. */
+/* calibrate_observe.c: where a log stands still, what its procedure observes; a solution. */
 imk_status imki_observe(imk_calibrate_log *b, imk_calibrate_record *log, imk_error *error);
+imk_status imki_solve_once(imk_calibrate_log *b, imk_error *error);
+/* calibrate_solve.c: the solution, where sigmas are not stated with those of the residuals. */
 imk_status imki_solve(imk_calibrate_log *b, imk_error *error);
 /* calibrate_closed_form.c: in the place of the last two. */
 imk_status imki_closed_form(imk_calibrate_log *b, imk_error *error);

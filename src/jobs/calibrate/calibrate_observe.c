@@ -2,10 +2,7 @@
 /* What each log adds to the problem, and the one estimate of all of them together. */
 #include "calibrate_internal.h"
 
-#include "jobs/job_internal.h"
-
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Room for this many observations and turns at first; as many again while that is too little. */
@@ -176,24 +173,7 @@ imk_status imki_observe(imk_calibrate_log *b, imk_calibrate_record *log, imk_err
 
 /* ---- solution -------------------------------------------------------------------------------- */
 
-/* Sensitivities that were found are names for what the parameters are relative to: short ones do
- * as well. */
-static void shorten_nominal(imk_calibrate_log *b)
-{
-    imk_triad *triad[2] = {&b->calibration->model.gyro, &b->calibration->model.accel};
-    for (int sensor = 0; sensor < 2; sensor++)
-        for (int i = 0; b->nominal[sensor] && i < triad[sensor]->axis_count; i++) {
-            double *s = &triad[sensor]->sensitivity.value[i];
-            double *zero = &triad[sensor]->zero_offset.value[i];
-            if (*s == 0 || !isfinite(*s))
-                continue;
-            const double step = pow(10, floor(log10(fabs(*s))) - 3);
-            *s = step < 1 ? floor(*s / step + 0.5) / (1 / step) : floor(*s / step + 0.5) * step;
-            *zero = floor(*zero + 0.5);
-        }
-}
-
-static imk_status solve(imk_calibrate_log *b, imk_error *error)
+imk_status imki_solve_once(imk_calibrate_log *b, imk_error *error)
 {
     const size_t size = imk_calibration_workspace_size(b->calibration);
     void *workspace = imki_resize(&b->job.allocator, NULL, size);
@@ -210,63 +190,4 @@ static imk_status solve(imk_calibrate_log *b, imk_error *error)
     b->diagnostic_count = imk_solution_diagnostics(b->calibration, result,
                                                    IMK_CALIBRATE_DIAGNOSTICS_MAX, b->diagnostic);
     return IMK_OK;
-}
-
-/* Are there tables that do not say how well their means of a sensor are known, and which is the
- * first; do others observe the sensor, too? */
-static bool no_sigma(const imk_calibrate_log *b, int sensor, size_t *first, bool *others)
-{
-    bool any = false;
-    *others = false;
-    for (size_t k = b->count; k-- > 0;) {
-        const imk_procedure_findings *f = &b->record[k].findings;
-        const imk_observation *o = b->calibration->observation + f->first_observation;
-        bool observed = false;
-        for (size_t i = 0; i < f->observations && !observed; i++)
-            observed = isfinite(o[i].reading[sensor][0]);
-        if (observed && b->record[k].no_sigma[sensor])
-            any = true, *first = k;
-        else
-            *others = *others || observed;
-    }
-    return any;
-}
-
-/* The scatter of the residuals as sigma of the readings whose sigma nobody stated. */
-static imk_status take_scatter(imk_calibrate_log *b, int sensor, size_t first, bool others,
-                               imk_error *error)
-{
-    imk_calibration *c = b->calibration;
-    const imk_group_fit *fit = &b->result->group[sensor == 0 ? IMK_GROUP_GYRO : IMK_GROUP_ACCEL];
-    const double least = 3; /* as the estimator, which with fewer keeps the sigma */
-    char words[64];
-    snprintf(words, sizeof words, "%s\t%s", imki_sensor_titles[sensor], imki_sensor_keys[sensor]);
-    b->failed = first;
-    if (others)
-        return imki_fail(&b->findings, error, IMK_ERROR_CONFLICT, "means_mixed", words, 0, NULL);
-    if (!(fit->degrees_of_freedom >= least))
-        return imki_fail(&b->findings, error, IMK_ERROR_TOO_SHORT, "means_noise", words,
-                         IMKI_NUMBERS((double)fit->count, fit->degrees_of_freedom, least));
-    b->failed = b->count;
-    for (size_t i = 0; i < c->observation_count; i++)
-        for (int axis = 0; axis < IMK_AXES_MAX; axis++)
-            c->observation[i].sigma[sensor][axis] *= fit->factor;
-    return IMK_OK;
-}
-
-imk_status imki_solve(imk_calibrate_log *b, imk_error *error)
-{
-    bool again = false;
-    shorten_nominal(b);
-    imk_status status = solve(b, error);
-    for (int sensor = 0; status == IMK_OK && sensor < 2; sensor++) {
-        size_t first;
-        bool others;
-        if (!no_sigma(b, sensor, &first, &others))
-            continue;
-        again = true;
-        status = take_scatter(b, sensor, first, others, error);
-    }
-    /* Once more with these: factors are then 1, and what is told of the fit is of the scatter. */
-    return status == IMK_OK && again ? solve(b, error) : status;
 }

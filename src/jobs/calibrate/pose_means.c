@@ -10,7 +10,7 @@
  * q^2/12 exp(-2 pi^2 (s^2 - q^2/12)/q^2) to the variance of the mean, as in static_summary.c.
  *
  * A table that says nothing gets equal sigmas of some size; the solution replaces them by what the
- * residuals show (calibrate_observe.c). */
+ * residuals show (calibrate_solve.c). */
 #include "calibrate_internal.h"
 
 #include "jobs/job_internal.h"
