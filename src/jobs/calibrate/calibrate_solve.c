@@ -18,6 +18,9 @@
 #include <math.h>
 #include <stdio.h>
 
+/* F in the end. Sigmas that are all alike do not tell an added sigma from a factor, and the estimator
+ * looks for an added one above 0.9 only. */
+static const double aimed_at = 0.85;
 /* k^2 is about 1. */
 static const double agreed = 0.03;
 /* Fewer degrees of freedom give no factor, as in the estimator. */
@@ -146,10 +149,10 @@ static bool take_scatter(imk_calibrate_log *b, int sensor, int round)
 {
     const imk_group_fit *fit = fit_of(b, sensor);
     const scatter sum = sum_scatter(b, sensor);
-    const double whole = sum.residual / fit->degrees_of_freedom;
+    const double factor = fit->factor / aimed_at, whole = sum.residual / fit->degrees_of_freedom;
     double square = whole;
     if (has_factor(b->result, sensor))
-        square = fmax(1 + (fit->factor * fit->factor - 1) * sum.variance / sum.own,
+        square = fmax(1 + (factor * factor - 1) * sum.variance / sum.own,
                       fmin(1, 2 / sqrt(fit->degrees_of_freedom)) * whole);
     else if (round > 0)
         return false;

@@ -265,8 +265,8 @@ static void add_means(const imk_calibrate_log *b, const imk_calibrate_record *lo
             imk_unit_readable(imk_unit_of(imki_sensor_units[sensor]).dimension, fit->rms);
         add(v, imki_calibrate_say(
                    IMK_FINDING_NOTE, "noise_of_residuals",
-                   "%.150s does not say how well the %s means are known: every uncertainty is from "
-                   "the scatter of their residuals, %.3g %s rms, with %.1f degrees of freedom",
+                   "%.150s does not say how well the %s means are known: their noise is taken from "
+                   "the scatter of the residuals, %.3g %s rms, with %.1f degrees of freedom",
                    log->path, imki_sensor_titles[sensor], fit->rms / unit.scale, unit.text,
                    fit->degrees_of_freedom));
     }

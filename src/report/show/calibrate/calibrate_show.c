@@ -36,8 +36,9 @@ static void show_parameters(const imk_calibration_result *r, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_fit(const imk_calibration_result *r, imk_result *result)
+static void show_fit(const imk_calibrate_log *b, imk_result *result)
 {
+    const imk_calibration_result *r = b->result;
     static const char *const names[IMK_GROUPS] = {"gyro", "accel", "turn"};
     static const char *const units[IMK_GROUPS] = {"rad/s", "m/s^2", "rad"};
     imk_result_object(result, "fit");
@@ -48,9 +49,11 @@ static void show_fit(const imk_calibration_result *r, imk_result *result)
         imk_result_object(result, names[g]);
         imk_result_count(result, "count", (long long)fit->count);
         imk_result_count(result, "refused", (long long)fit->refused);
-        imk_result_number(result, "chi_square", fit->chi_square);
+        if (!imki_no_sigma(b, g))
+            imk_result_number(result, "chi_square", fit->chi_square);
         imk_result_number(result, "degrees_of_freedom", fit->degrees_of_freedom);
-        imk_result_number(result, "factor", fit->factor);
+        if (!imki_no_sigma(b, g))
+            imk_result_number(result, "factor", fit->factor);
         imk_result_quantity(result, "rms", fit->rms, units[g]);
         imk_result_end(result);
     }
@@ -235,7 +238,7 @@ static void show_data(const imk_calibrate_log *b, const imk_verdict *v, const ch
     imk_result_end(result);
     imk_result_text(result, "frame", imk_triad_frame_name(b->calibration->frame));
     show_parameters(b->result, result);
-    show_fit(b->result, result);
+    show_fit(b, result);
     show_observations(b, result);
     show_runs(b, result);
     show_closed_form(b, result);

@@ -139,11 +139,14 @@ void imki_fit_table(const imk_calibrate_log *b, imk_result *result)
             continue;
         const imk_unit unit = imk_unit_readable(imk_unit_of(si[g]).dimension, fit->rms);
         imk_table_row(table, "%s\t%zu\t%zu", names[g], fit->count, fit->refused);
-        if (fit->degrees_of_freedom >= 0.5)
-            imk_table_add(table, "%.4g / %.1f", fit->chi_square, fit->degrees_of_freedom);
+        if (imki_no_sigma(b, g))
+            imk_table_add(table, "- / %.1f\t-", fit->degrees_of_freedom);
+        else if (fit->degrees_of_freedom >= 0.5)
+            imk_table_add(table, "%.4g / %.1f\t%.3g", fit->chi_square, fit->degrees_of_freedom,
+                          fit->factor);
         else
-            imk_table_add(table, "-");
-        imk_table_add(table, "%.3g\t%.4g %s", fit->factor, fit->rms / unit.scale, unit.text);
+            imk_table_add(table, "-\t%.3g", fit->factor);
+        imk_table_add(table, "%.4g %s", fit->rms / unit.scale, unit.text);
     }
     imk_result_gap(result);
 }
@@ -192,8 +195,9 @@ void imki_pose_table(const imk_calibrate_log *b, imk_result *result)
     for (size_t k = 0; k < b->count; k++)
         times = times || !b->record[k].record.means;
     imk_table *table = imk_result_table(result, 0);
-    imk_table_row(table, "%s\t%s\tforce along\t[degC]\taccel [mg]\tgyro [deg/s]\tsigmas\t",
-                  several ? "log" : "", times ? "from [s]\tlength [s]" : "pose\t");
+    imk_table_row(table,
+                  "%s\t%s\t%s\tforce along\t[degC]\taccel [mg]\tgyro [deg/s]\tsigmas\t",
+                  several ? "log" : "", times ? "from [s]" : "pose", times ? "length [s]" : "");
     for (size_t k = 0; k < b->calibration->observation_count; k++) {
         const imk_observation *o = &b->calibration->observation[k];
         const imk_test_record *record = b->calibration->record[o->record];

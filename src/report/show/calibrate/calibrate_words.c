@@ -156,6 +156,15 @@ static void show_fixtures(const imk_calibrate_log *b, imk_result *result)
     free(list.bytes);
 }
 
+bool imki_no_sigma(const imk_calibrate_log *b, int group)
+{
+    bool any = false;
+    for (size_t k = 0; k < b->count; k++)
+        any = any || (group == IMK_GROUP_GYRO && b->record[k].no_sigma[0]) ||
+              (group == IMK_GROUP_ACCEL && b->record[k].no_sigma[1]);
+    return any;
+}
+
 const char *imki_label_of(const imk_test_record *record, size_t row)
 {
     const int section = record->section ? record->section[row] : -1;
