@@ -252,7 +252,8 @@ static bool has_slow_noise(const imk_triad *triad)
 static void add_means(const imk_calibrate_log *b, const imk_calibrate_record *log, imk_verdict *v)
 {
     static const int groups[2] = {IMK_GROUP_GYRO, IMK_GROUP_ACCEL};
-    const bool gyros = log->record.axis_count[0] > 0;
+    const imk_model_parameter scale = {IMK_GYRO, IMK_MODEL_SCALE_FACTOR, 0, 0};
+    const bool turns = log->record.axis_count[0] == 0 || imk_calibrate_find(b, scale) >= 0;
     bool slow = false;
     if (!log->record.means || !b->result)
         return;
@@ -270,7 +271,7 @@ static void add_means(const imk_calibrate_log *b, const imk_calibrate_record *lo
                    log->path, imki_sensor_titles[sensor], fit->rms / unit.scale, unit.text,
                    fit->degrees_of_freedom));
     }
-    if (gyros && log->procedure == IMK_PROCEDURE_MULTIPOSITION && log->settings.gyro_turns)
+    if (!turns && log->procedure == IMK_PROCEDURE_MULTIPOSITION && log->settings.gyro_turns)
         add(v, imki_calibrate_say(IMK_FINDING_NOTE, "no_turns",
                                   "%.150s has no turns: the scale factors and misalignments of the "
                                   "gyros are left as before",
