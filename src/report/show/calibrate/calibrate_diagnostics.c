@@ -248,6 +248,14 @@ static bool has_slow_noise(const imk_triad *triad)
     return triad->present && (any || triad->noise.gauss_markov_count > 0);
 }
 
+static bool has_parameters(const imk_calibrate_log *b, int sensor)
+{
+    size_t p = 0;
+    while (p < b->result->parameter_count && b->result->parameter[p].sensor != sensor)
+        p++;
+    return p < b->result->parameter_count;
+}
+
 /* What the means of a table leave open. */
 static void add_means(const imk_calibrate_log *b, const imk_calibrate_record *log, imk_verdict *v)
 {
@@ -259,6 +267,8 @@ static void add_means(const imk_calibrate_log *b, const imk_calibrate_record *lo
         return;
     for (int sensor = 1; sensor >= 0; sensor--) {
         const imk_group_fit *fit = &b->result->group[groups[sensor]];
+        if (!has_parameters(b, sensor))
+            continue;
         slow = slow || has_slow_noise(imk_model_triad(&b->calibration->model, sensor));
         if (!log->no_sigma[sensor] || fit->count == 0)
             continue;

@@ -17,15 +17,6 @@ static bool is_estimated(const imk_calibrate_log *b, int sensor)
     return false;
 }
 
-/* No record has times. */
-static bool only_means(const imk_calibrate_log *b)
-{
-    size_t k = 0;
-    while (k < b->count && b->record[k].record.means)
-        k++;
-    return k == b->count;
-}
-
 /* A procedure of any record; `unnamed`: whose faces or poses have no labels. */
 static bool has(const imk_calibrate_log *b, imk_procedure first, imk_procedure last, bool unnamed)
 {
@@ -44,7 +35,7 @@ static void add_of_gyros(const imk_calibrate_log *b, imki_text *list)
     if (has(b, IMK_PROCEDURE_RATE_TABLE, IMK_PROCEDURE_SPIN, false))
         add_item(list, "an error of the reference (it goes into bias, scale factor and "
                        "misalignment)");
-    else if (!only_means(b) && has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_FERRARIS, false))
+    else if (has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_FERRARIS, false))
         add_item(list, "a sampling rate that is some per cent off (the scale factors of all "
                        "gyros change by as much)");
 }
