@@ -180,8 +180,12 @@ static int check_means(const session *b)
     const struct {
         const char *name;
         double value;
-    } times[] = {{"initial-rest", s->initial_rest}, {"window", s->window}, {"minimum", s->minimum},
-                 {"trim", s->trim},                 {"settle", s->settle}, {"rate", o->log.file.rate}};
+    } times[] = {{"initial-rest", s->initial_rest},
+                 {"window", s->window},
+                 {"minimum", s->minimum},
+                 {"trim", s->trim},
+                 {"settle", s->settle},
+                 {"rate", o->log.file.rate}};
     bool tables = false, logs = b->settings.repeatability;
     for (size_t k = 0; k < b->count && !b->settings.repeatability; k++) {
         tables = tables || imk_procedure_takes_means(b->procedure[k]);

@@ -280,15 +280,17 @@ static const struct message {
     {"sections", "{record} has {0} text columns; name the one that divides it into sections, such "
                  "as --section {name}"},
     /* calibrate: pose_means.c, calibrate_observe.c */
-    {"means_motion", "{record}: --motion says at which time which force acts, and a table of pose "
-                     "means has no times: add columns reference_force_x [g] and so on, the force of "
-                     "each row"},
+    {"means_motion",
+     "{record}: --motion says at which time which force acts, and a table of pose "
+     "means has no times: add columns reference_force_x [g] and so on, the force of "
+     "each row"},
     {"means_of_log",
      "{record} looks like a log, not like a table of pose means: of its {0} rows most have nearly "
      "the same attitude as the row before. Leave --pose-means out; if each row is the mean of a "
      "pose, add a column samples, the number of samples in it"},
-    {"means_both", "{record} has {name} and {other}: one says how well the mean is known; leave the "
-                   "other one out"},
+    {"means_both",
+     "{record} has {name} and {other}: one says how well the mean is known; leave the "
+     "other one out"},
     {"means_incomplete",
      "{record} says how well some means are known, but not that of {name}: add {name}_std or "
      "{name}_std_of_mean, or leave such columns out on all axes of the sensor"},
@@ -307,7 +309,8 @@ static const struct message {
      "{record}: the readings of rows {0} and {1} are equal on all axes{3?}, and of {2} more "
      "rows{?}: a row that was copied counts twice; delete it"},
     {"means_mixed",
-     "{record} does not say how well the {name} means are known, and other logs observe the {name}s, "
+     "{record} does not say how well the {name} means are known, and other logs observe the "
+     "{name}s, "
      "too: add columns {other}_x_std and so on with samples, or calibrate without the other logs"},
     {"means_noise",
      "{record} does not say how well the {name} means are known, and {0} readings leave {1.1f} "

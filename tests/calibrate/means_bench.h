@@ -80,10 +80,9 @@ static inline means_bench *means_new(const means_plan *plan, uint64_t seed, uint
         {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z", "gyro_x_std [rad/s]",
          "gyro_y_std [rad/s]", "gyro_z_std [rad/s]", "accel_x_std [m/s^2]", "accel_y_std [m/s^2]",
          "accel_z_std [m/s^2]", "samples"},
-        {"gyro_x [count]", "gyro_y [count]", "gyro_z [count]", "accel_x [count]",
-         "accel_y [count]", "accel_z [count]", "gyro_x_std [count]", "gyro_y_std [count]",
-         "gyro_z_std [count]", "accel_x_std [count]", "accel_y_std [count]", "accel_z_std [count]",
-         "samples"}};
+        {"gyro_x [count]", "gyro_y [count]", "gyro_z [count]", "accel_x [count]", "accel_y [count]",
+         "accel_z [count]", "gyro_x_std [count]", "gyro_y_std [count]", "gyro_z_std [count]",
+         "accel_x_std [count]", "accel_y_std [count]", "accel_z_std [count]", "samples"}};
     const double *data[MEANS_COLUMNS];
     means_bench *b = calloc(1, sizeof *b);
     if (!b)

@@ -34,8 +34,9 @@ static void write_table(const char *path, int poses, bool labels, const char *sp
 {
     FILE *file = fopen(path, "w");
     assert_non_null(file);
-    fprintf(file, "%saccel_x [m/s^2],accel_y [m/s^2],accel_z [m/s^2],gyro_x [deg/s],gyro_y "
-                  "[deg/s],gyro_z [deg/s]%s\n",
+    fprintf(file,
+            "%saccel_x [m/s^2],accel_y [m/s^2],accel_z [m/s^2],gyro_x [deg/s],gyro_y "
+            "[deg/s],gyro_z [deg/s]%s\n",
             labels ? "pose," : "",
             spread ? ",accel_x_std [m/s^2],accel_y_std [m/s^2],accel_z_std [m/s^2],samples" : "");
     for (int k = 0; k < poses; k++) {
@@ -43,7 +44,10 @@ static void write_table(const char *path, int poses, bool labels, const char *sp
         double u[3] = {0};
         direction(labels ? k % 6 : k % POSES, u);
         if (labels)
-            fprintf(file, "%c_%s,", fabs(u[0]) > 0.5 ? 'x' : fabs(u[1]) > 0.5 ? 'y' : 'z',
+            fprintf(file, "%c_%s,",
+                    fabs(u[0]) > 0.5   ? 'x'
+                    : fabs(u[1]) > 0.5 ? 'y'
+                                       : 'z',
                     u[0] + u[1] + u[2] > 0 ? "up" : "down");
         for (int i = 0; i < 3; i++)
             fprintf(file, "%.6f,", 9.80743 * u[i] + bias[i] + 1e-3 * draw());
@@ -67,9 +71,9 @@ static bool has_sentence(const json_t *result, const char *code)
 {
     size_t k;
     json_t *sentence;
-    json_array_foreach(json_object_get(result, "sentences"), k, sentence)
-        if (strcmp(json_string_value(json_object_get(sentence, "code")), code) == 0)
-            return true;
+    json_array_foreach(json_object_get(result, "sentences"), k,
+                       sentence) if (strcmp(json_string_value(json_object_get(sentence, "code")),
+                                            code) == 0) return true;
     return false;
 }
 
@@ -108,7 +112,8 @@ static void table_with_deviations(void **state)
     const json_t *result = json_object_get(root, "result");
     const json_t *fit = json_object_get(result, "fit");
     /* 0.02/sqrt(400) is what the readings scatter by. */
-    CHECK_CLOSE(json_number_value(json_object_get(json_object_get(fit, "accel"), "factor")), 1, 0.6);
+    CHECK_CLOSE(json_number_value(json_object_get(json_object_get(fit, "accel"), "factor")), 1,
+                0.6);
     assert_null(json_object_get(json_object_get(fit, "gyro"), "factor"));
     assert_true(has_sentence(result, "no_turns"));
     json_decref(root);
@@ -140,11 +145,11 @@ static void option_is_suggested(void **state)
         "$I calibrate table.csv -p multiposition", "$I calibrate faces.csv -p sixposition",
         "$I calibrate stated.csv -p multiposition", "$I calibrate timed.csv -p multiposition",
         "$I calibrate table.csv -p multiposition --rate 1Hz"};
-    const char *const logs[] = {
-        "$I calibrate table.csv -p rate-table", /* needs times */
-        "$I calibrate log.csv -p multiposition", "$I calibrate rest.csv -p multiposition",
-        "$I calibrate rest.csv -p multiposition --rate 100Hz",
-        "$I calibrate log.csv -p multiposition --rate 100Hz"};
+    const char *const logs[] = {"$I calibrate table.csv -p rate-table", /* needs times */
+                                "$I calibrate log.csv -p multiposition",
+                                "$I calibrate rest.csv -p multiposition",
+                                "$I calibrate rest.csv -p multiposition --rate 100Hz",
+                                "$I calibrate log.csv -p multiposition --rate 100Hz"};
     write_table("table.csv", POSES, false, NULL);
     write_table("stated.csv", POSES, false, ",0.02,0.02,0.02,400");
     write_table("faces.csv", 6, true, NULL);
@@ -187,8 +192,9 @@ static void what_does_not_go_with_it(void **state)
     check_says("$I calibrate table.csv" TABLE " --axes right-forward-up", 2,
                "--axes does not go with --pose-means");
     check_says("$I calibrate table.csv -p tumble --pose-means", 1, "reference_force_x [g]");
-    check_says("sed '1s/accel_x_std .m.s.2./accel_x_std/' table.csv > w.csv; $I calibrate w.csv" TABLE,
-               1, "accel_x_std has no unit; write it into the header, such as accel_x_std [m/s^2]");
+    check_says(
+        "sed '1s/accel_x_std .m.s.2./accel_x_std/' table.csv > w.csv; $I calibrate w.csv" TABLE, 1,
+        "accel_x_std has no unit; write it into the header, such as accel_x_std [m/s^2]");
     check_says("cut -d, -f1-9 table.csv > w.csv; $I calibrate w.csv" TABLE, 1,
                "add a column samples with their number");
     check_says("sed '1s/accel_z_std/other/' table.csv > w.csv; $I calibrate w.csv" TABLE, 1,
@@ -210,8 +216,8 @@ static void what_does_not_go_with_it(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_are_named),       cmocka_unit_test(table_with_deviations),
-        cmocka_unit_test(outliers_are_rows),    cmocka_unit_test(option_is_suggested),
+        cmocka_unit_test(rows_are_named),           cmocka_unit_test(table_with_deviations),
+        cmocka_unit_test(outliers_are_rows),        cmocka_unit_test(option_is_suggested),
         cmocka_unit_test(what_does_not_go_with_it),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

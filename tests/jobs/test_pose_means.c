@@ -63,19 +63,26 @@ static void unstated_sigmas_are_the_scatter(void **state)
         means_bench *b = means_new(&alone, 3, 0);
         const imk_calibrate_log_settings settings = means_settings(b, &alone);
         if (k == 1) {
-            static const char *const names[] = {
-                "gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z",
-                "gyro_x_std_of_mean [rad/s]", "gyro_y_std_of_mean [rad/s]",
-                "gyro_z_std_of_mean [rad/s]", "accel_x_std_of_mean [m/s^2]",
-                "accel_y_std_of_mean [mm/s^2]", "accel_z_std_of_mean [m/s^2]"};
+            static const char *const names[] = {"gyro_x",
+                                                "gyro_y",
+                                                "gyro_z",
+                                                "accel_x",
+                                                "accel_y",
+                                                "accel_z",
+                                                "gyro_x_std_of_mean [rad/s]",
+                                                "gyro_y_std_of_mean [rad/s]",
+                                                "gyro_z_std_of_mean [rad/s]",
+                                                "accel_x_std_of_mean [m/s^2]",
+                                                "accel_y_std_of_mean [mm/s^2]",
+                                                "accel_z_std_of_mean [m/s^2]"};
             const double *data[12];
             for (int c = 0; c < 12; c++) {
                 data[c] = b->column[c];
                 for (size_t row = 0; c >= 6 && row < b->rows; row++)
                     b->column[c][row] = c < 9 ? 3e-5 : c == 10 ? 3 : 3e-3; /* c == 10: mm/s^2 */
             }
-            CHECK_OK(imk_array_source_make(12, names, data, b->rows, 1, &b->arrays, &b->source,
-                                           NULL));
+            CHECK_OK(
+                imk_array_source_make(12, names, data, b->rows, 1, &b->arrays, &b->source, NULL));
         }
         CHECK_OK(calibrate(b, IMK_PROCEDURE_MULTIPOSITION, &settings, &found[k]));
         means_free(b);
@@ -130,8 +137,12 @@ static void tumble_takes_forces_of_rows(void **state)
 {
     (void)state;
     enum { ROWS = 24 };
-    static const char *const names[] = {"accel_x", "accel_y", "accel_z", "reference_force_x [m/s^2]",
-                                        "reference_force_y [m/s^2]", "reference_force_z [m/s^2]"};
+    static const char *const names[] = {"accel_x",
+                                        "accel_y",
+                                        "accel_z",
+                                        "reference_force_x [m/s^2]",
+                                        "reference_force_y [m/s^2]",
+                                        "reference_force_z [m/s^2]"};
     static double column[6][ROWS];
     const double *data[6];
     imk_array_source arrays;
@@ -185,11 +196,10 @@ static void check_refused(const means_plan *plan, int column, double value, imk_
     imk_calibrate_log *found;
     if (column >= 0)
         b->column[column][3] = value;
-    assert_int_equal(calibrate(b,
-                               plan->rounds > 0 ? IMK_PROCEDURE_SIXPOSITION
-                                                : IMK_PROCEDURE_MULTIPOSITION,
-                               &settings, &found),
-                     due);
+    assert_int_equal(
+        calibrate(b, plan->rounds > 0 ? IMK_PROCEDURE_SIXPOSITION : IMK_PROCEDURE_MULTIPOSITION,
+                  &settings, &found),
+        due);
     assert_string_equal(code_of(found), code);
     imk_calibrate_log_free(found);
     means_free(b);
@@ -263,7 +273,8 @@ static bool looks_like_means(size_t rows, size_t stay, size_t attitudes)
     imk_calibrate_record record = {.record = {.count = rows, .axis_count = {0, 3}}};
     for (int i = 0; i < 3; i++) {
         for (size_t row = 0; row < rows; row++)
-            column[i][row] = b->column[3 + i][row / stay % attitudes] + 1e-2 * session_normal(b->of);
+            column[i][row] =
+                b->column[3 + i][row / stay % attitudes] + 1e-2 * session_normal(b->of);
         record.record.reading[IMK_ACCEL][i] = column[i];
     }
     means_free(b);

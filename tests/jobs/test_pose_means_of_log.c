@@ -33,11 +33,19 @@ static void take_means(const multiposition_session *b)
 static imk_calibrate_log *calibrate(const multiposition_session *b, size_t columns,
                                     const double *const *data, size_t rows, bool means)
 {
-    static const char *const names[COLUMNS] = {
-        "gyro_x [count]",      "gyro_y [count]",      "gyro_z [count]",     "accel_x [count]",
-        "accel_y [count]",     "accel_z [count]",     "gyro_x_std [count]", "gyro_y_std [count]",
-        "gyro_z_std [count]",  "accel_x_std [count]", "accel_y_std [count]", "accel_z_std [count]",
-        "samples"};
+    static const char *const names[COLUMNS] = {"gyro_x [count]",
+                                               "gyro_y [count]",
+                                               "gyro_z [count]",
+                                               "accel_x [count]",
+                                               "accel_y [count]",
+                                               "accel_z [count]",
+                                               "gyro_x_std [count]",
+                                               "gyro_y_std [count]",
+                                               "gyro_z_std [count]",
+                                               "accel_x_std [count]",
+                                               "accel_y_std [count]",
+                                               "accel_z_std [count]",
+                                               "samples"};
     imk_calibrate_log_settings settings = imk_calibrate_log_default();
     imk_array_source arrays;
     imk_record_source source;

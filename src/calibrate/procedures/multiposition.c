@@ -289,15 +289,16 @@ static imk_observation observation_of(const gathering *g, const imki_hold_noise 
                          .temperature = hold->temperature,
                          .temperature_rate = hold->temperature_rate,
                          .fixture = -1,
-                         .correlated = g->record->means /* when the rows were taken, nobody says */};
+                         .correlated =
+                             g->record->means /* when the rows were taken, nobody says */};
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < IMK_AXES_MAX; i++) {
             const bool present = i < g->record->axis_count[sensor];
             o.reading[sensor][i] = present ? hold->mean[sensor][i] : (double)NAN;
-            o.sigma[sensor][i] = !present           ? 1.0
-                                 : g->record->means ? hold->sigma[sensor][i]
-                                                    : imki_hold_sigma(noise, hold, sensor, i,
-                                                                      step_of(g, sensor, i));
+            o.sigma[sensor][i] =
+                !present           ? 1.0
+                : g->record->means ? hold->sigma[sensor][i]
+                                   : imki_hold_sigma(noise, hold, sensor, i, step_of(g, sensor, i));
         }
     for (int i = 0; i < 3; i++)
         o.force[i] = (hold->mean[IMK_ACCEL][i] - g->scaling[IMK_ACCEL].zero[i]) *

@@ -120,8 +120,8 @@ void imki_reference_take(const imki_procedure_call *call, int sensor,
         const double pooled = sqrt(noise->variance[sensor][axis] / samples);
         observation->reading[sensor][axis] = reading->mean[sensor][axis];
         /* A stretch that is disturbed beyond what luck explains speaks for itself. */
-        observation->sigma[sensor][axis] =
-            fmax(stated || own > 3.0 * pooled ? own : pooled, imki_reference_floor(call, sensor, axis));
+        observation->sigma[sensor][axis] = fmax(stated || own > 3.0 * pooled ? own : pooled,
+                                                imki_reference_floor(call, sensor, axis));
     }
     observation->temperature = reading->temperature;
     observation->temperature_rate =

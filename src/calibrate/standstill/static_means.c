@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Intervals at rest of a table of means: somebody else has found the rests and taken the means, with
- * their sigmas; each row is an interval. */
+/* Intervals at rest of a table of means: somebody else has found the rests and taken the means,
+ * with their sigmas; each row is an interval. */
 #include "static_internal.h"
 
 #include <math.h>
 
 imk_static_interval imki_static_mean(const imk_test_record *record, size_t row)
 {
-    imk_static_interval interval = {
-        .begin = row,
-        .end = row + 1,
-        .temperature = record->temperature ? record->temperature[row] : (double)NAN,
-        .section = record->section ? record->section[row] : -1};
+    imk_static_interval interval = {.begin = row,
+                                    .end = row + 1,
+                                    .temperature = record->temperature ? record->temperature[row]
+                                                                       : (double)NAN,
+                                    .section = record->section ? record->section[row] : -1};
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < IMK_AXES_MAX; i++) {
             const bool present = i < record->axis_count[sensor];

@@ -18,8 +18,8 @@
 #include <math.h>
 #include <stdio.h>
 
-/* F in the end. Sigmas that are all alike do not tell an added sigma from a factor, and the estimator
- * looks for an added one above 0.9 only. */
+/* F in the end. Sigmas that are all alike do not tell an added sigma from a factor, and the
+ * estimator looks for an added one above 0.9 only. */
 static const double aimed_at = 0.85;
 /* k^2 is about 1. */
 static const double agreed = 0.03;
@@ -87,9 +87,9 @@ static imk_status check_scatter(imk_calibrate_log *b, int sensor, size_t first, 
 
 /* Sums over the readings of a sensor. */
 typedef struct scatter {
-    double variance;  /* as used, in their unit */
-    double own;       /* s^2 */
-    double residual;  /* (residual/s)^2 */
+    double variance; /* as used, in their unit */
+    double own;      /* s^2 */
+    double residual; /* (residual/s)^2 */
 } scatter;
 
 static scatter sum_scatter(const imk_calibrate_log *b, int sensor)

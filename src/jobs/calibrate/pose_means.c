@@ -3,8 +3,8 @@
  * how well these are known:
  *
  *     gyro_x_std, accel_x_std …            standard deviation s of the samples; with a column
- *                                          `samples`, their number n, sigma of the mean is s/sqrt(n)
- *     gyro_x_std_of_mean …                 sigma itself
+ *                                          `samples`, their number n, sigma of the mean is
+ * s/sqrt(n) gyro_x_std_of_mean …                 sigma itself
  *
  * Counts that scatter by less than their step q = 1 do not average out; by [WIDROW2008] that adds
  * q^2/12 exp(-2 pi^2 (s^2 - q^2/12)/q^2) to the variance of the mean, as in static_summary.c.
@@ -20,7 +20,7 @@
 #include <string.h>
 
 enum {
-    FEW_ROWS = 64,     /* so few may be of any order */
+    FEW_ROWS = 64,      /* so few may be of any order */
     ROWS_OF_HAND = 500, /* more poses than anybody sets by hand */
     ROWS_OF_LOG = 1000
 };
@@ -254,9 +254,9 @@ static void tell_equal(imk_calibrate_record *log)
                 break;
             }
     if (pairs > 0)
-        imki_find(&log->loaded, IMK_FINDING_WARNING, "calibrate:equal_rows", NULL,
-                  IMKI_NUMBERS((double)first[0] + 1, (double)first[1] + 1, (double)pairs - 1,
-                               pairs > 1));
+        imki_find(
+            &log->loaded, IMK_FINDING_WARNING, "calibrate:equal_rows", NULL,
+            IMKI_NUMBERS((double)first[0] + 1, (double)first[1] + 1, (double)pairs - 1, pairs > 1));
 }
 
 /* ---- all of it ------------------------------------------------------------------------------- */

@@ -195,8 +195,7 @@ void imki_pose_table(const imk_calibrate_log *b, imk_result *result)
     for (size_t k = 0; k < b->count; k++)
         times = times || !b->record[k].record.means;
     imk_table *table = imk_result_table(result, 0);
-    imk_table_row(table,
-                  "%s\t%s\t%s\tforce along\t[degC]\taccel [mg]\tgyro [deg/s]\tsigmas\t",
+    imk_table_row(table, "%s\t%s\t%s\tforce along\t[degC]\taccel [mg]\tgyro [deg/s]\tsigmas\t",
                   several ? "log" : "", times ? "from [s]" : "pose", times ? "length [s]" : "");
     for (size_t k = 0; k < b->calibration->observation_count; k++) {
         const imk_observation *o = &b->calibration->observation[k];
