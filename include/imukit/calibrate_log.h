@@ -223,8 +223,6 @@ IMK_API bool imk_calibrate_term_path(int sensor, int term, char path[IMK_MODEL_P
 
 /** Does the procedure know what the unit is exposed to? */
 IMK_API bool imk_procedure_is_known(imk_procedure procedure);
-/** Does the procedure take tables of pose means? */
-IMK_API bool imk_procedure_takes_means(imk_procedure procedure);
 
 /** Index of a parameter in session->result, or -1. */
 IMK_API int imk_calibrate_find(const imk_calibrate_log *session, imk_model_parameter parameter);

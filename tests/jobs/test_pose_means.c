@@ -262,6 +262,50 @@ static void other_procedures_are_refused(void **state)
                      IMK_ERROR_CONFLICT);
 }
 
+/* The core looks before it uses a record: procedures that need every sample, and sigmas that are
+ * not there. */
+static void records_are_checked(void **state)
+{
+    (void)state;
+    enum { ROWS = 14 };
+    static double reading[3][ROWS], sigma[ROWS], workspace[1 << 16];
+    static imk_calibration c;
+    static imk_observation room[ROWS];
+    session *s = session_new(4, 0);
+    imk_test_record record = {
+        .name = "table", .count = ROWS, .dt = 1, .axis_count = {0, 3}, .means = true};
+    for (int row = 0; row < ROWS; row++) {
+        session_pose(s, 1);
+        sigma[row] = 1e-3;
+        for (int i = 0; i < 3; i++)
+            reading[i][row] = s->observation[row].reading[IMK_ACCEL][i];
+    }
+    for (int i = 0; i < 3; i++)
+        record.reading[IMK_ACCEL][i] = reading[i];
+    imk_calibration_default(&c);
+    c.observation = room;
+    c.observation_capacity = ROWS;
+    for (int p = 0; p < IMK_PROCEDURES; p++) {
+        const imk_procedure procedure = (imk_procedure)p;
+        const imk_procedure_settings settings = imk_procedure_default(procedure);
+        imk_error error;
+        assert_int_equal(imk_procedure_observe(procedure, &c, &record, &settings, false, NULL,
+                                               workspace, sizeof workspace, &error),
+                         imk_procedure_takes_means(procedure) ? IMK_ERROR_ARGUMENT
+                                                              : IMK_ERROR_UNSUPPORTED);
+        assert_int_equal(c.observation_count, 0);
+    }
+    assert_true(isnan(imk_static_summary(&record, 0, 1).sigma[IMK_ACCEL][0]));
+    for (int i = 0; i < 3; i++)
+        record.mean_sigma[IMK_ACCEL][i] = sigma;
+    const imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_MULTIPOSITION);
+    CHECK_OK(imk_procedure_observe(IMK_PROCEDURE_MULTIPOSITION, &c, &record, &settings, false, NULL,
+                                   workspace, sizeof workspace, NULL));
+    assert_int_equal(c.observation_count, ROWS);
+    CHECK_CLOSE(room[3].sigma[IMK_ACCEL][1], 1e-3, 0);
+    session_free(s);
+}
+
 /* ---- table or log ---------------------------------------------------------------------------- */
 
 /* A record of accelerometers: `stay` rows in each attitude, of `attitudes` in turn. */
@@ -303,6 +347,7 @@ int main(void)
         cmocka_unit_test(wrong_values_are_refused),
         cmocka_unit_test(equal_rows_are_told),
         cmocka_unit_test(other_procedures_are_refused),
+        cmocka_unit_test(records_are_checked),
         cmocka_unit_test(tables_are_told_from_logs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

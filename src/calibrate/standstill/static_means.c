@@ -15,8 +15,12 @@ imk_static_interval imki_static_mean(const imk_test_record *record, size_t row)
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < IMK_AXES_MAX; i++) {
             const bool present = i < record->axis_count[sensor];
-            interval.mean[sensor][i] = present ? record->reading[sensor][i][row] : (double)NAN;
-            interval.sigma[sensor][i] = present ? record->mean_sigma[sensor][i][row] : (double)NAN;
+            interval.mean[sensor][i] = present && record->reading[sensor][i]
+                                           ? record->reading[sensor][i][row]
+                                           : (double)NAN;
+            interval.sigma[sensor][i] = present && record->mean_sigma[sensor][i]
+                                            ? record->mean_sigma[sensor][i][row]
+                                            : (double)NAN;
             interval.scatter[sensor][i] = (double)NAN;
         }
     return interval;
@@ -33,7 +37,7 @@ size_t imki_static_means(const imk_test_record *record, imk_static_interval *int
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < record->axis_count[sensor]; i++) {
             double square = 0.0;
-            for (size_t row = 0; row < record->count; row++)
+            for (size_t row = 0; record->mean_sigma[sensor][i] && row < record->count; row++)
                 square += record->mean_sigma[sensor][i][row] * record->mean_sigma[sensor][i][row];
             findings->noise[sensor][i] = sqrt(square / (double)record->count);
         }

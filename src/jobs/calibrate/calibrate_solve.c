@@ -23,8 +23,12 @@
 static const double aimed_at = 0.85;
 /* k^2 is about 1. */
 static const double agreed = 0.03;
+/* Least s over the first one, which is 1e-4 of gravity: means without noise, made by a formula,
+ * have none to be found. */
+static const double least_square = 1e-4;
 /* Fewer degrees of freedom give no factor, as in the estimator. */
 static const double least_freedom = 3;
+
 /* Sensitivities that were found are names for what the parameters are relative to: short ones do
  * as well. */
 static void shorten_nominal(imk_calibrate_log *b)
@@ -102,7 +106,7 @@ static scatter sum_scatter(const imk_calibrate_log *b, int sensor)
             const imk_observation *o = &c->observation[i];
             const imk_test_record *record = c->record[o->record];
             const double unit = record->counts[sensor] ? triad->sensitivity.value[axis] : 1;
-            if (!isfinite(o->residual[sensor][axis]) || !(o->weight > 0))
+            if (!record->means || !isfinite(o->residual[sensor][axis]) || !(o->weight > 0))
                 continue;
             const double s = record->mean_sigma[sensor][axis][o->begin];
             const double residual = unit * o->residual[sensor][axis] / s;
@@ -144,8 +148,9 @@ static bool has_factor(const imk_calibration_result *r, int sensor)
     return false;
 }
 
-/* The next s of a sensor. @return whether to solve again */
-static bool take_scatter(imk_calibrate_log *b, int sensor, int round)
+/* The next s of a sensor, whose square is `now` times that of the first.
+ * @return whether to solve again */
+static bool take_scatter(imk_calibrate_log *b, int sensor, int round, double *now)
 {
     const imk_group_fit *fit = fit_of(b, sensor);
     const scatter sum = sum_scatter(b, sensor);
@@ -156,8 +161,10 @@ static bool take_scatter(imk_calibrate_log *b, int sensor, int round)
                       fmin(1, 2 / sqrt(fit->degrees_of_freedom)) * whole);
     else if (round > 0)
         return false;
-    if (!(square > 0) || fabs(square - 1) < agreed)
+    square = fmax(square, least_square / *now);
+    if (fabs(square - 1) < agreed)
         return false;
+    *now *= square;
     scale_sigmas(b, sensor, square);
     return true;
 }
@@ -166,6 +173,7 @@ imk_status imki_solve(imk_calibrate_log *b, imk_error *error)
 {
     enum { ROUNDS = 8 };
     bool again = true;
+    double now[2] = {1, 1};
     imk_status status = IMK_OK;
     shorten_nominal(b);
     for (int round = 0; status == IMK_OK && again; round++) {
@@ -177,7 +185,7 @@ imk_status imki_solve(imk_calibrate_log *b, imk_error *error)
             if (first == b->count)
                 continue;
             status = check_scatter(b, sensor, first, others, error);
-            if (status == IMK_OK && round < ROUNDS && take_scatter(b, sensor, round))
+            if (status == IMK_OK && round < ROUNDS && take_scatter(b, sensor, round, &now[sensor]))
                 again = true;
         }
     }

@@ -30,12 +30,6 @@ static const double jump = 0.1;
 /* Of the size of the force: the readings of one attitude extend over less. */
 static const double one_attitude = 0.3;
 
-bool imk_procedure_takes_means(imk_procedure procedure)
-{
-    return procedure == IMK_PROCEDURE_MULTIPOSITION || procedure == IMK_PROCEDURE_SIXPOSITION ||
-           procedure == IMK_PROCEDURE_TUMBLE;
-}
-
 /* ---- table or log ---------------------------------------------------------------------------- */
 
 /* How the accelerometers of rows differ. */
