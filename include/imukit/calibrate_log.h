@@ -66,9 +66,9 @@ typedef struct imk_calibrate_log_settings {
                               rests in rows without a text are then no holds */
     /** Records of multiposition, sixposition and tumble are tables: each row has the means of one
      *  pose, in columns as of a log, and how well they are known: gyro_x_std and so on, the
-     * standard deviation of the samples, with their number in `samples`; or gyro_x_std_of_mean.
-     * Without these the scatter of the residuals is the noise. The time is not looked at: the rate
-     * of an array source may be 1. Default false */
+     *  standard deviation of the samples, with their number in `samples`; or gyro_x_std_of_mean.
+     *  Without these the scatter of the residuals is the noise. The time is not looked at: the rate
+     *  of an array source may be 1. Default false */
     bool pose_means;
     double placement;           /**< 1 sigma of the attitude of a face on the plate [rad] */
     double g_sensitivity_sigma; /**< 1 sigma of a g-sensitivity that is not estimated [rad/s per
