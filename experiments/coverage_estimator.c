@@ -3,9 +3,10 @@
  * [BENCHES] [SEED]. Observations are drawn, not samples: means with normal errors, at poses under
  * gravity with any heading, at known rates and forces, and both. Signals beyond white noise belong
  * to the procedures' own experiments; here sigmas are stated right, three times too small, and
- * a tenth of the poses have a force that is 3 % off. */
-#include "../tests/calibrate/coverage.h"
-#include "../tests/calibrate/estimator_session.h"
+ * a tenth of the poses have a force that is 3 % off. Then the same as tables of pose means
+ * (--pose-means), with and without their standard deviations, by the job; [BENCHES] [SEED] means
+ * makes only these. */
+#include "../tests/calibrate/means_bench.h"
 
 #include "imukit/distributions.h"
 
@@ -62,6 +63,39 @@ static void run(const kind *k, size_t benches, uint64_t seed)
     coverage_print(&count, stdout);
 }
 
+static void run_tables(size_t benches, uint64_t seed)
+{
+    static const double tenth = 0.0017453292519943296; /* of a degree */
+    static const means_plan plans[] = {
+        {"table of 24 poses", 24, .understated = 1},
+        {"table of 14 poses", 14, .understated = 1},
+        {"table of 24 poses in counts", 24, .understated = 1, .counts = true},
+        {"table of 24 poses, 2 bad", 24, .bad = 2, .understated = 1},
+        {"table of 24 poses, deviations and samples", 24, .stated = true, .understated = 1},
+        {"table of 14 poses, deviations and samples", 14, .stated = true, .understated = 1},
+        {"the same in counts", 14, .stated = true, .understated = 1, .counts = true},
+        {"table of 24 poses, deviations three times too small", 24, .stated = true,
+         .understated = 3},
+        {"table of faces, three times", .rounds = 3, .placement = tenth, .understated = 1},
+        {"table of faces, exact, once", .rounds = 1, .understated = 1},
+        {"table of faces, once, deviations and samples", .rounds = 1, .placement = tenth,
+         .stated = true, .understated = 1},
+    };
+    for (size_t i = 0; i < sizeof plans / sizeof *plans; i++) {
+        coverage_count count;
+        memset(&count, 0, sizeof count);
+        for (size_t k = 0; k < benches; k++) {
+            imk_error error;
+            if (means_run(&plans[i], seed, (uint32_t)k, &count, &error) != IMK_OK &&
+                count.failed == 1)
+                printf("table %zu: %s %s %s\n", k, imk_status_name(error.status), error.field,
+                       error.expected);
+        }
+        printf("%s: %zu benches, %zu not solved\n", plans[i].name, count.benches, count.failed);
+        coverage_print(&count, stdout);
+    }
+}
+
 int main(int argc, char **argv)
 {
     static const kind kinds[] = {
@@ -75,7 +109,8 @@ int main(int argc, char **argv)
     };
     const size_t benches = argc > 1 ? (size_t)strtoul(argv[1], NULL, 10) : 3000;
     const uint64_t seed = argc > 2 ? strtoul(argv[2], NULL, 10) : 1;
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+    for (size_t i = 0; argc <= 3 && i < sizeof kinds / sizeof *kinds; i++)
         run(&kinds[i], benches, seed);
+    run_tables(benches, seed);
     return 0;
 }

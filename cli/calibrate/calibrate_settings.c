@@ -172,6 +172,40 @@ static int assign_procedures(session *b)
     return -1;
 }
 
+/* Tables have neither times nor samples. */
+static int check_means(const session *b)
+{
+    const calibrate_options *o = b->options;
+    const imk_calibrate_log_settings *s = &o->settings;
+    const struct {
+        const char *name;
+        double value;
+    } times[] = {{"initial-rest", s->initial_rest},
+                 {"window", s->window},
+                 {"minimum", s->minimum},
+                 {"trim", s->trim},
+                 {"settle", s->settle},
+                 {"rate", o->log.file.rate}};
+    bool tables = false, logs = b->settings.repeatability;
+    for (size_t k = 0; k < b->count && !b->settings.repeatability; k++) {
+        tables = tables || imk_procedure_takes_means(b->procedure[k]);
+        logs = logs || !imk_procedure_takes_means(b->procedure[k]);
+    }
+    if (!tables)
+        return command_misused("--pose-means: %s needs a log, with every sample; only "
+                               "multiposition, sixposition and tumble take tables of pose means",
+                               o->procedure);
+    for (size_t k = 0; !logs && k < sizeof times / sizeof times[0]; k++)
+        if (times[k].value > 0)
+            return command_misused("--%s is of logs; a table of pose means has no times: leave it "
+                                   "out",
+                                   times[k].name);
+    if (o->log.file.axes)
+        return command_misused("--axes does not go with --pose-means: name the columns in the "
+                               "header by forward-right-down axes");
+    return -1;
+}
+
 /* An option that no procedure looks at was meant for another one. */
 static int check_used(const session *b)
 {
@@ -203,7 +237,7 @@ static int check_used(const session *b)
         return command_misused(none, "temperature-order", o->procedure, "thermal");
     if (!isnan(o->settings.reference_temperature) && !thermal)
         return command_misused(none, "reference-temperature", o->procedure, "thermal");
-    return -1;
+    return o->settings.pose_means ? check_means(b) : -1;
 }
 
 static int check_closed_form(const session *b)

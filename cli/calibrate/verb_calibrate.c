@@ -78,6 +78,11 @@ static const option test_options[] = {
 };
 
 static const option log_options[] = {
+    {"pose-means", OPTION_FLAG, AT(settings.pose_means),
+     .help = "the logs of multiposition, sixposition and tumble are tables with a row for each "
+             "pose: its mean readings, and how well they are known, gyro_x_std [deg/s], "
+             "accel_x_std [g] … of the samples and their number, samples, or accel_x_std_of_mean "
+             "[g] …; without these the scatter of the residuals tells"},
     {"section", OPTION_TEXT, AT(settings.section), .value = "COLUMN",
      .help =
          "column of texts that name the holds, turns or runs (multiposition: rests without a text "

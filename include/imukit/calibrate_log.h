@@ -64,6 +64,12 @@ typedef struct imk_calibrate_log_settings {
     const char *section; /**< name of the column of texts that names holds, turns or runs; default
                               NULL: the only column of texts, if there is one. With multiposition,
                               rests in rows without a text are then no holds */
+    /** Records of multiposition, sixposition and tumble are tables: each row has the means of one
+     *  pose, in columns as of a log, and how well they are known: gyro_x_std and so on, the
+     *  standard deviation of the samples, with their number in `samples`; or gyro_x_std_of_mean.
+     *  Without these the scatter of the residuals is the noise. The time is not looked at: the rate
+     *  of an array source may be 1. Default false */
+    bool pose_means;
     double placement;    /**< 1 sigma of the attitude of a face on the plate; of angle and axis of a
                             turn [rad] */
     double g_sensitivity_sigma; /**< 1 sigma of a g-sensitivity that is not estimated [rad/s per
@@ -103,7 +109,10 @@ typedef struct imk_calibrate_record {
     size_t dropped;                 /**< rows left out because their time does not increase */
     int *section;
     const char **section_name;
-    double *reference; /**< IMK_CALIBRATE_REFERENCES columns: rate, force, angular acceleration */
+    double *mean_sigma; /**< of a table of means: a column for each axis, gyros first */
+    bool no_sigma[2];   /**< the table does not say how well the means of gyros, accelerometers
+                             are known */
+    double *reference;  /**< IMK_CALIBRATE_REFERENCES columns: rate, force, angular acceleration */
     double motion_offset; /**< time of the record at which the programme begins [s] */
     imk_findings loaded;  /**< findings of imk_calibrate_record_load() */
     imk_procedure procedure;
@@ -165,8 +174,8 @@ IMK_API imk_status imk_calibrate_logs(size_t count, const imk_calibrate_input *i
  *  @param job        NULL: one thread, memory of the C library, no progress
  *  @return IMK_ERROR_RANGE ("count": 0, or more than IMK_TEST_RECORDS_MAX; "procedure"; "gravity":
  *          value), IMK_ERROR_CONFLICT ("frame": gravity alone does not tell the reference frame;
- *          "closed_form": not one ferraris record; "estimate": with or without beside it), _MEMORY
- */
+ *          "closed_form": not one ferraris record; "estimate": with or without beside it;
+ *          "pose_means": no record is of a procedure that takes them), _MEMORY */
 IMK_API imk_status imk_calibrate_log_create(size_t count, const imk_procedure *procedure,
                                             const imk_calibrate_log_settings *settings,
                                             const imk_job *job, imk_calibrate_log **session,
@@ -267,6 +276,9 @@ IMK_API imk_status imk_calibrate_record_load(const imk_calibrate_log_settings *s
                                              const char *name, const imk_record_source *source,
                                              const imk_job *job, imk_calibrate_record *record,
                                              imk_error *error);
+/** Does a record that was loaded as a log look like a table of pose means: few rows, most of them
+ * in another attitude than the row before? */
+IMK_API bool imk_calibrate_looks_like_means(const imk_calibrate_record *log);
 /** Free columns, sections and references of a record that is none of a calibration. */
 IMK_API void imk_calibrate_record_free(imk_calibrate_record *log);
 /** Time of a row [s]. */

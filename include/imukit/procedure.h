@@ -38,6 +38,9 @@ typedef enum imk_procedure {
 /** "multiposition", "rate-table" …; NULL beyond the last. */
 IMK_API const char *imk_procedure_name(imk_procedure procedure);
 
+/** Does the procedure take records whose rows are means of poses (imk_test_record.means)? */
+IMK_API bool imk_procedure_takes_means(imk_procedure procedure);
+
 /** How to analyse a log. Start from imk_procedure_default(procedure), then change fields. A field
  *  whose comment names procedures is used by these only. */
 typedef struct imk_procedure_settings {
@@ -131,7 +134,8 @@ IMK_API size_t imk_procedure_workspace_size(imk_procedure procedure, const imk_t
  *          limit: number needed), IMK_ERROR_KEY_MISSING (field: what the record lacks:
  *          "reference_rate", "temperature", "section", "gyro" …), IMK_ERROR_UNIT_MISSING,
  *          IMK_ERROR_WORKSPACE (also for the capacity of observations; value: needed, limit:
- *          available), IMK_ERROR_RANGE (settings), errors of imk_static_detect(); on error the
+ *          available), IMK_ERROR_RANGE (settings), IMK_ERROR_UNSUPPORTED (a record of means, and
+ *          the procedure does not take them), errors of imk_static_detect(); on error the
  *          calibration is unchanged */
 IMK_API imk_status imk_procedure_observe(imk_procedure procedure, imk_calibration *calibration,
                                          const imk_test_record *record,

@@ -28,6 +28,12 @@ typedef struct imk_test_record {
     const int *section; /**< per sample: index of the label of a section, -1: none; NULL: none */
     size_t section_count;
     const char *const *section_name; /**< section_count names */
+    /** Each row is the mean over a pose at rest, not a sample: rows do not follow each other in
+     *  time. `time` is NULL and `dt` any number above 0. Taken by multiposition (without turns),
+     *  sixposition and tumble. */
+    bool means;
+    const double *mean_sigma[2][IMK_AXES_MAX]; /**< with `means`: 1 sigma of each mean, as the
+                                                    readings; > 0 */
 } imk_test_record;
 
 IMK_END_C

@@ -284,6 +284,43 @@ static const struct message {
     {"longer_than_record", "--{name} {0.6g}s is longer than {record}, which has {1.4g} s"},
     {"sections", "{record} has {0} text columns; name the one that divides it into sections, such "
                  "as --section {name}"},
+    /* calibrate: pose_means.c, calibrate_observe.c */
+    {"means_motion",
+     "{record}: --motion says at which time which force acts, and a table of pose "
+     "means has no times: add columns reference_force_x [g] and so on, the force of "
+     "each row"},
+    {"means_of_log",
+     "{record} looks like a log, not like a table of pose means: of its {0} rows most have nearly "
+     "the same attitude as the row before. Leave --pose-means out; if each row is the mean of a "
+     "pose, add a column samples, the number of samples in it"},
+    {"means_both",
+     "{record} has {name} and {other}: one says how well the mean is known; leave the "
+     "other one out"},
+    {"means_incomplete",
+     "{record} says how well some means are known, but not that of {name}: add {name}_std or "
+     "{name}_std_of_mean, or leave such columns out on all axes of the sensor"},
+    {"means_no_samples",
+     "{record}: {name} is the standard deviation of the samples; add a column samples with their "
+     "number. If it is that of the mean, name it {name}_of_mean"},
+    {"means_std", "{record}: row {0}: {name} is {2?}{1g}{2!}not a number{?}; expected a standard "
+                  "deviation above 0 in each row"},
+    {"means_samples", "{record}: row {0}: {name} is {2?}{1g}{2!}not a number{?}; expected the "
+                      "number of samples in the mean, 1 or more"},
+    {"means_no_number", "{record}: row {0} has no number in {name}: complete this row, or delete "
+                        "it"},
+    {"means_increments", "{record}: {name} holds increments; --pose-means needs the mean rate or "
+                         "force of each pose: gyro_x [deg/s], accel_x [g]"},
+    {"calibrate:equal_rows",
+     "{record}: the readings of rows {0} and {1} are equal on all axes{3?}, and of {2} more "
+     "rows{?}: a row that was copied counts twice; delete it"},
+    {"means_mixed",
+     "{record} does not say how well the {name} means are known, and other logs observe the "
+     "{name}s, "
+     "too: add columns {other}_x_std and so on with samples, or calibrate without the other logs"},
+    {"means_noise",
+     "{record} does not say how well the {name} means are known, and {0} readings leave {1.1f} "
+     "degrees of freedom to see it by their scatter; {2} are needed: add columns {other}_x_std and "
+     "so on with samples, or more poses, also of attitudes that are there"},
     /* calibrate_exposure.c */
     {"calibrate:no_unit",
      "{record}: {name} has no unit; write it into the header, such as {name} [{other}]"},

@@ -5,7 +5,7 @@
  * the estimator. Between two holds the gyros must carry the vertical from one to the other: the
  * stretch from the end of one to the beginning of the next is a turn. How well both are known:
  * multiposition_sigma.c; what counts stand for when the model does not say: multiposition_start.c.
- */
+ * A table of means has holds only, with the sigmas that it states. */
 #include "base/refuse_internal.h"
 #include "multiposition_internal.h"
 #include "procedure_internal.h"
@@ -51,6 +51,8 @@ static imk_static_settings detection_of(const imk_procedure_settings *settings)
 
 static size_t hold_capacity(const imk_test_record *record, const imk_procedure_settings *settings)
 {
+    if (record->means)
+        return record->count;
     const double shortest = fmax(settings->stationary.minimum, 2.0 * record->dt);
     const double most = (double)record->count * record->dt / shortest + 2.0;
     return most < HOLDS_MAX ? (size_t)most : HOLDS_MAX;
@@ -286,13 +288,17 @@ static imk_observation observation_of(const gathering *g, const imki_hold_noise 
                          .end = hold->end,
                          .temperature = hold->temperature,
                          .temperature_rate = hold->temperature_rate,
-                         .fixture = -1};
+                         .fixture = -1,
+                         .correlated =
+                             g->record->means /* when the rows were taken, nobody says */};
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < IMK_AXES_MAX; i++) {
             const bool present = i < g->record->axis_count[sensor];
             o.reading[sensor][i] = present ? hold->mean[sensor][i] : (double)NAN;
             o.sigma[sensor][i] =
-                present ? imki_hold_sigma(noise, hold, sensor, i, step_of(g, sensor, i)) : 1.0;
+                !present           ? 1.0
+                : g->record->means ? hold->sigma[sensor][i]
+                                   : imki_hold_sigma(noise, hold, sensor, i, step_of(g, sensor, i));
         }
     for (int i = 0; i < 3; i++)
         o.force[i] = (hold->mean[IMK_ACCEL][i] - g->scaling[IMK_ACCEL].zero[i]) *
@@ -311,7 +317,8 @@ static size_t holds_before(const imk_calibration *calibration)
 
 static bool with_turns(const gathering *g)
 {
-    return g->call->settings->gyro_turns && g->record->axis_count[IMK_GYRO] >= 3;
+    return g->call->settings->gyro_turns && g->record->axis_count[IMK_GYRO] >= 3 &&
+           !g->record->means;
 }
 
 static imk_status check_amount(const gathering *g)

@@ -16,18 +16,19 @@ typedef struct procedure_entry {
     const char *name;
     imk_status (*observe)(const imki_procedure_call *call);
     size_t (*workspace)(const imk_test_record *record, const imk_procedure_settings *settings);
+    bool means;
 } procedure_entry;
 
 static const procedure_entry procedures[IMK_PROCEDURES] = {
-    {"multiposition", imki_multiposition_observe, imki_multiposition_workspace},
-    {"sixposition", imki_six_position_observe, imki_six_position_workspace},
-    {"ferraris", imki_ferraris_observe, imki_ferraris_workspace},
-    {"rate-table", imki_reference_observe, imki_reference_workspace},
-    {"tumble", imki_reference_observe, imki_reference_workspace},
-    {"centrifuge", imki_reference_observe, imki_reference_workspace},
-    {"spin", imki_reference_observe, imki_reference_workspace},
-    {"thermal", imki_thermal_observe, imki_thermal_workspace},
-    {"turns", imki_turns_observe, imki_turns_workspace},
+    {"multiposition", imki_multiposition_observe, imki_multiposition_workspace, true},
+    {"sixposition", imki_six_position_observe, imki_six_position_workspace, true},
+    {"ferraris", imki_ferraris_observe, imki_ferraris_workspace, false},
+    {"rate-table", imki_reference_observe, imki_reference_workspace, false},
+    {"tumble", imki_reference_observe, imki_reference_workspace, true},
+    {"centrifuge", imki_reference_observe, imki_reference_workspace, false},
+    {"spin", imki_reference_observe, imki_reference_workspace, false},
+    {"thermal", imki_thermal_observe, imki_thermal_workspace, false},
+    {"turns", imki_turns_observe, imki_turns_workspace, false},
 };
 
 static bool exists(imk_procedure procedure)
@@ -38,6 +39,11 @@ static bool exists(imk_procedure procedure)
 const char *imk_procedure_name(imk_procedure procedure)
 {
     return exists(procedure) ? procedures[procedure].name : NULL;
+}
+
+bool imk_procedure_takes_means(imk_procedure procedure)
+{
+    return exists(procedure) && procedures[procedure].means;
 }
 
 imk_procedure_settings imk_procedure_default(imk_procedure procedure)
@@ -151,9 +157,9 @@ static imk_status check_record(const imk_test_record *record, const imk_model *m
             return IMK_ERROR_CONFLICT;
         }
         for (int i = 0; i < record->axis_count[sensor]; i++)
-            if (!record->reading[sensor][i])
+            if (!record->reading[sensor][i] || (record->means && !record->mean_sigma[sensor][i]))
                 return imk_error_set(error, IMK_ERROR_ARGUMENT, names[sensor], NULL,
-                                     "readings of every axis");
+                                     "readings of every axis, and of means their sigmas");
     }
     return IMK_OK;
 }
@@ -173,6 +179,9 @@ imk_status imk_procedure_observe(imk_procedure procedure, imk_calibration *calib
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, NULL, NULL,
                              "start from imk_procedure_default() and imk_calibration_default()");
     imk_status status = check_settings(settings, error);
+    if (record->means && !imk_procedure_takes_means(procedure))
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "means", NULL,
+                             "a log: this procedure does not take means of poses");
     if (status == IMK_OK)
         status = check_record(record, &calibration->model, error);
     if (status != IMK_OK)

@@ -129,7 +129,8 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_sessio
                                     ? stretch->summary.temperature_rate
                                     : 0.0,
             .placement_sigma = settings->placement_sigma,
-            .fixture = *fixture};
+            .fixture = *fixture,
+            .correlated = c->record[call->record]->means};
         double up[3] = {0.0}, earth_sigma[3];
         up[stretch->at.axis] = stretch->at.sense;
         observation.force[stretch->at.axis] = stretch->at.sense * c->gravity;

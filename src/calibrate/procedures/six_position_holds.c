@@ -33,7 +33,8 @@ static size_t section_runs(const imk_test_record *record)
 {
     size_t runs = 0;
     for (size_t k = 0; record->section && k < record->count; k++)
-        runs += record->section[k] >= 0 && (k == 0 || record->section[k] != record->section[k - 1]);
+        runs += record->section[k] >= 0 &&
+                (k == 0 || record->means || record->section[k] != record->section[k - 1]);
     return runs;
 }
 
@@ -78,7 +79,9 @@ static bool section_stretch(const imk_test_record *record, const imk_procedure_s
     if (label.kind == IMKI_LABEL_OTHER)
         return false;
     const bool turn = label.kind == IMKI_LABEL_TURN;
-    if (!turn) {
+    if (turn && record->means)
+        return false;
+    if (!turn && !record->means) {
         const size_t tail = imk_samples_in(settings->trim, record->dt);
         const size_t head = imk_samples_in(settings->trim + settings->settle, record->dt);
         if ((double)(end - begin) * record->dt <
@@ -102,7 +105,7 @@ static void list_sections(const imk_test_record *record, const imk_procedure_set
 {
     for (size_t k = 0; k < record->count;) {
         size_t end = k + 1;
-        while (end < record->count && record->section[end] == record->section[k])
+        while (!record->means && end < record->count && record->section[end] == record->section[k])
             end++;
         if (record->section[k] >= 0) {
             list->found++;

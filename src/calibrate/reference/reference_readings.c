@@ -59,7 +59,8 @@ imk_observation imki_reference_blank(const imki_procedure_call *call, size_t beg
                          .begin = begin,
                          .end = end,
                          .temperature = (double)NAN,
-                         .fixture = fixture};
+                         .fixture = fixture,
+                         .correlated = record_of(call)->means};
     for (int sensor = 0; sensor < 2; sensor++)
         for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
             o.reading[sensor][axis] = (double)NAN;
@@ -112,14 +113,15 @@ void imki_reference_take(const imki_procedure_call *call, int sensor,
                          imk_observation *observation)
 {
     const imk_static_interval *reading = &stretch->reading;
+    const bool stated = record_of(call)->means;
     const double samples = (double)(stretch->end - stretch->begin);
     for (int axis = 0; axis < record_of(call)->axis_count[sensor]; axis++) {
         const double own = reading->sigma[sensor][axis];
         const double pooled = sqrt(noise->variance[sensor][axis] / samples);
         observation->reading[sensor][axis] = reading->mean[sensor][axis];
         /* A stretch that is disturbed beyond what luck explains speaks for itself. */
-        observation->sigma[sensor][axis] =
-            fmax(own > 3.0 * pooled ? own : pooled, imki_reference_floor(call, sensor, axis));
+        observation->sigma[sensor][axis] = fmax(stated || own > 3.0 * pooled ? own : pooled,
+                                                imki_reference_floor(call, sensor, axis));
     }
     observation->temperature = reading->temperature;
     observation->temperature_rate =

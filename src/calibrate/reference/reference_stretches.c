@@ -272,6 +272,12 @@ imk_status imk_reference_stretches(const imk_test_record *record,
         return imk_error_set(
             error, IMK_ERROR_KEY_MISSING, "reference", NULL,
             "give the reference: reference columns in the log, or the programme of the motion");
+    if (record->means) {
+        for (size_t row = 0; row < record->count && row < capacity; row++)
+            stretch[row] = stretch_of(record, row, row + 1);
+        *count = record->count;
+        return IMK_OK;
+    }
     const lengths l = lengths_of(record, settings);
     *count = find(&s, &l, stretch, capacity);
     return IMK_OK;

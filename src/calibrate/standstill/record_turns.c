@@ -311,7 +311,7 @@ static void add_explanation(const explanation *e, double missed, imki_diagnostic
 static bool has_both_triads(const imki_diagnostic_call *call)
 {
     const imk_test_record *r = call->record;
-    if (r->axis_count[IMK_GYRO] != 3 || r->axis_count[IMK_ACCEL] != 3)
+    if (r->means || r->axis_count[IMK_GYRO] != 3 || r->axis_count[IMK_ACCEL] != 3)
         return false;
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < 3; i++)

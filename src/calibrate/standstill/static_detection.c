@@ -348,6 +348,8 @@ static imk_status check(const imk_test_record *record, const imk_static_settings
     if (!(record->dt > 0.0 && isfinite(record->dt)) || axes_of(record) == 0)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "record", NULL,
                              "a sample interval and readings");
+    if (record->means)
+        return IMK_OK;
     const size_t block = block_length(record, settings);
     const size_t needed = block * IMKI_WINDOW_BLOCKS * 2;
     if (record->count < needed || record->count < SAMPLES_MIN)
@@ -392,6 +394,10 @@ imk_status imk_static_detect(const imk_test_record *record, const imk_static_set
     const imk_status status = check(record, settings, workspace_size, error);
     if (status != IMK_OK)
         return status;
+    if (record->means) {
+        *count = imki_static_means(record, interval, capacity, activity, findings);
+        return IMK_OK;
+    }
     imki_static_job job = {.false_alarm = settings->false_alarm};
     imki_static_blocks kept;
     imk_static_findings found = {0};

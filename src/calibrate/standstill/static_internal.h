@@ -120,6 +120,13 @@ typedef struct imki_static_run {
 /* The next one from window *window on, which moves behind it; false: there is none. */
 bool imki_static_next_run(const imki_static_job *job, size_t *window, imki_static_run *run);
 
+/* ---- static_means.c: a table of means, every row of which is an interval ---- */
+
+imk_static_interval imki_static_mean(const imk_test_record *record, size_t row);
+/* As imk_static_detect(). @return the number of rows */
+size_t imki_static_means(const imk_test_record *record, imk_static_interval *interval,
+                         size_t capacity, double *activity, imk_static_findings *findings);
+
 /* ---- static_summary.c ---- */
 
 /* As imk_static_summary(), with the steps of the readings where they are known. */

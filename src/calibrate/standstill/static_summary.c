@@ -192,6 +192,8 @@ static void summarise_temperature(const imk_test_record *record, imk_static_inte
 imk_static_interval imki_static_summarise(const imk_test_record *record, size_t begin, size_t end,
                                           double step[2][IMK_AXES_MAX])
 {
+    if (record->means && begin < record->count)
+        return imki_static_mean(record, begin);
     imk_static_interval interval = {
         .begin = begin, .end = end, .temperature = (double)NAN, .section = -1};
     for (int sensor = 0; sensor < 2; sensor++)

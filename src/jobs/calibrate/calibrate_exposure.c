@@ -40,9 +40,8 @@ static double *reference_column(imk_calibrate_record *log, int column)
 
 /* ---- columns --------------------------------------------------------------------------------- */
 
-/* Index of the column of this name with the dimension of a unit; -1: there is none. */
-static imk_status find_column(imk_calibrate_record *log, const char *name, const char *unit,
-                              int *found, imk_error *error)
+imk_status imki_find_column(imk_calibrate_record *log, const char *name, const char *unit,
+                            int *found, imk_error *error)
 {
     *found = -1;
     for (size_t c = 0; c < log->log.column_count; c++) {
@@ -73,7 +72,7 @@ static imk_status take_vector(imk_calibrate_record *log, const char *name, const
     for (int k = 0; k < 3; k++) {
         char full[48];
         snprintf(full, sizeof full, "%s_%c", name, "xyz"[k]);
-        const imk_status status = find_column(log, full, unit, &column[k], error);
+        const imk_status status = imki_find_column(log, full, unit, &column[k], error);
         if (status != IMK_OK)
             return status;
     }
@@ -90,7 +89,7 @@ static imk_status take_table(const imk_calibrate_log_settings *s, imk_calibrate_
                              imk_error *error)
 {
     int column;
-    const imk_status status = find_column(log, "table_rate", "deg/s", &column, error);
+    const imk_status status = imki_find_column(log, "table_rate", "deg/s", &column, error);
     if (status != IMK_OK)
         return status;
     if (column < 0)

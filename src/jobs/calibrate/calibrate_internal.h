@@ -19,12 +19,21 @@ imk_status imki_calibrate_set_up(imk_calibrate_log *b, const imk_procedure *proc
 imk_status imki_know_before(imk_calibrate_log *b, imk_error *error);
 /* calibrate_terms.c: estimate what is named. */
 imk_status imki_free_terms(imk_calibrate_log *b, imk_error *error);
-/* calibrate_exposure.c: what the unit was exposed to, from columns or the programme. */
+/* calibrate_exposure.c: index of the column of this name with the dimension of a unit, -1: there is
+ * none; what the unit was exposed to, from columns or the programme. */
+imk_status imki_find_column(imk_calibrate_record *log, const char *name, const char *unit,
+                            int *found, imk_error *error);
 imk_status imki_take_reference(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
                                imk_error *error);
 
-/* calibrate_observe.c: where a log stands still, what its procedure observes; then the solution. */
+/* pose_means.c: how well the means of a table are known, from the columns beside them. */
+imk_status imki_take_means(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
+                           imk_error *error);
+
+/* calibrate_observe.c: where a log stands still, what its procedure observes; a solution. */
 imk_status imki_observe(imk_calibrate_log *b, imk_calibrate_record *log, imk_error *error);
+imk_status imki_solve_once(imk_calibrate_log *b, imk_error *error);
+/* calibrate_solve.c: the solution, where sigmas are not stated with those of the residuals. */
 imk_status imki_solve(imk_calibrate_log *b, imk_error *error);
 /* calibrate_closed_form.c: in the place of the last two. */
 imk_status imki_closed_form(imk_calibrate_log *b, imk_error *error);

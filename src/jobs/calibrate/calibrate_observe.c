@@ -81,7 +81,7 @@ static imk_status detect(imk_calibrate_log *b, imk_calibrate_record *log, imk_er
 {
     const size_t size = imk_static_workspace_size(&log->record, &log->settings.stationary);
     void *workspace = imki_resize(&b->job.allocator, NULL, size);
-    if (b->settings.activity)
+    if (b->settings.activity && !log->record.means)
         log->activity = imki_arena_take(b->memory, log->record.count * sizeof *log->activity);
     if (!workspace || b->memory->failed) {
         imki_resize(&b->job.allocator, workspace, 0);
@@ -168,33 +168,15 @@ imk_status imki_observe(imk_calibrate_log *b, imk_calibrate_record *log, imk_err
     imki_resize(&b->job.allocator, workspace, 0);
     if (status != IMK_OK)
         return error->status;
-    if (log->stationary.window > 0 && (b->nominal[0] || b->nominal[1]))
+    if ((log->stationary.window > 0 || log->record.means) && (b->nominal[0] || b->nominal[1]))
         diagnose(b, log); /* with the sensitivities that were found */
     return log->procedure == IMK_PROCEDURE_THERMAL ? look_at_temperature(b, log, error) : IMK_OK;
 }
 
 /* ---- solution -------------------------------------------------------------------------------- */
 
-/* Sensitivities that were found are names for what the parameters are relative to: short ones do
- * as well. */
-static void shorten_nominal(imk_calibrate_log *b)
+imk_status imki_solve_once(imk_calibrate_log *b, imk_error *error)
 {
-    imk_triad *triad[2] = {&b->calibration->model.gyro, &b->calibration->model.accel};
-    for (int sensor = 0; sensor < 2; sensor++)
-        for (int i = 0; b->nominal[sensor] && i < triad[sensor]->axis_count; i++) {
-            double *s = &triad[sensor]->sensitivity.value[i];
-            double *zero = &triad[sensor]->zero_offset.value[i];
-            if (*s == 0 || !isfinite(*s))
-                continue;
-            const double step = pow(10, floor(log10(fabs(*s))) - 3);
-            *s = step < 1 ? floor(*s / step + 0.5) / (1 / step) : floor(*s / step + 0.5) * step;
-            *zero = floor(*zero + 0.5);
-        }
-}
-
-imk_status imki_solve(imk_calibrate_log *b, imk_error *error)
-{
-    shorten_nominal(b);
     const size_t size = imk_calibration_workspace_size(b->calibration);
     void *workspace = imki_resize(&b->job.allocator, NULL, size);
     imk_calibration_result *result = imki_arena_take(b->memory, sizeof *result);

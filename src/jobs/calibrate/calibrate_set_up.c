@@ -141,13 +141,17 @@ imk_status imki_calibrate_set_up(imk_calibrate_log *b, const imk_procedure *proc
                                  imk_error *error)
 {
     const imk_calibrate_log_settings *s = &b->settings;
+    bool means = false;
     imk_calibration_default(b->calibration);
     b->calibration->robust = !s->least_squares;
     for (size_t k = 0; k < b->count; k++) {
         if ((int)procedure[k] < 0 || procedure[k] >= IMK_PROCEDURES)
             return imk_error_set(error, IMK_ERROR_RANGE, "procedure", NULL, NULL);
         b->record[k].procedure = procedure[k];
+        means = means || imk_procedure_takes_means(procedure[k]);
     }
+    if (s->pose_means && (!means || s->repeatability))
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "pose_means", NULL, NULL);
     if (s->estimate && (s->with || s->without))
         return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate", NULL, NULL);
     if (s->closed_form &&

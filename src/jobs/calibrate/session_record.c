@@ -185,14 +185,14 @@ static imk_status make_record(imk_calibrate_record *log, const char *section,
     const int temperature = imk_log_find(columns, IMK_QUANTITY_TEMPERATURE, -1);
     int column = -1;
     imk_log_forget_faults(columns);
-    if (time >= 0)
+    if (time >= 0 && !record->means)
         drop_rows(log, time, findings);
     if (columns->rows == 0)
         return imki_fail(findings, error, IMK_ERROR_EMPTY, "no_rows", NULL, 0, NULL);
     record->name = imki_record_name(log->path);
     record->count = columns->rows;
-    record->dt = columns->findings.interval;
-    record->time = time >= 0 ? columns->data[time] : NULL;
+    record->dt = record->means ? 1.0 : columns->findings.interval;
+    record->time = time >= 0 && !record->means ? columns->data[time] : NULL;
     record->temperature = temperature >= 0 ? columns->data[temperature] : NULL;
     imk_status status = take_axes(log, 0, findings, error);
     if (status == IMK_OK)
@@ -203,7 +203,7 @@ static imk_status make_record(imk_calibrate_record *log, const char *section,
         status = find_section(log, section, &column, findings, error);
     if (status == IMK_OK)
         status = take_sections(log, column, error);
-    if (status == IMK_OK)
+    if (status == IMK_OK && !record->means)
         tell_missing(record, findings);
     return status;
 }
@@ -217,16 +217,22 @@ imk_status imk_calibrate_record_load(const imk_calibrate_log_settings *settings,
         imki_check_call(record, settings, cookie, "imk_calibrate_log_default()", error);
     if (status != IMK_OK)
         return status;
+    const bool means = settings->pose_means && imk_procedure_takes_means(record->procedure);
+    imk_calibrate_log_settings known = *settings;
+    if (means)
+        known.motion = NULL; /* a programme says when, a table does not */
     record->path = name;
+    record->record.means = means;
     status = imki_record_load(source, imki_job_of(job), &record->log, error);
-    if (status == IMK_OK)
+    if (status == IMK_OK && !means)
         status = settle_times(source->rate, record, &record->loaded, error);
     if (status == IMK_OK)
         status = make_record(record, settings->section, &record->loaded, error);
     if (status == IMK_OK)
-        status = check_length(settings, record, error);
+        status = means ? imki_take_means(settings, record, error)
+                       : check_length(settings, record, error);
     if (status == IMK_OK)
-        status = imki_take_reference(settings, record, error);
+        status = imki_take_reference(&known, record, error);
     return status;
 }
 
@@ -236,5 +242,6 @@ void imk_calibrate_record_free(imk_calibrate_record *log)
     imki_resize(&allocator, log->section, 0);
     imki_resize(&allocator, log->section_name, 0);
     imki_resize(&allocator, log->reference, 0);
+    imki_resize(&allocator, log->mean_sigma, 0);
     imk_log_free(&log->log);
 }

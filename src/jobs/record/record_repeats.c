@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Is a sensor slower than the log, so that rows repeat its samples? Is a column the copy of another?
+/* Is a sensor slower than the log, so that rows repeat its samples? Is a column the copy of
+ * another?
  *
  * A share h of the rows repeats the row before on all axes of the sensor at once; the others do on
  * axis c by chance, with probability u_c, independently:
@@ -77,8 +78,9 @@ static void compare_channels(imki_repeat_counts *s, size_t rows, double *const *
     for (size_t b = 1; b < s->channels; b++)
         for (size_t a = 0; a < b; a++)
             if (!s->differ[a][b])
-                s->differ[a][b] = memcmp(columns[s->column[a]] + first, columns[s->column[b]] + first,
-                                         rows * sizeof **columns) != 0;
+                s->differ[a][b] =
+                    memcmp(columns[s->column[a]] + first, columns[s->column[b]] + first,
+                           rows * sizeof **columns) != 0;
 }
 
 static void add_rows(imki_repeat_counts *s, size_t rows, double *const *columns, size_t first)

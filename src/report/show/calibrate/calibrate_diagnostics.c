@@ -239,6 +239,62 @@ static void add_placements(const imk_calibrate_log *b, imk_verdict *v)
                    fit->rms * degrees, fit->factor, fit->rms * degrees));
 }
 
+/* Slow noise of the sensor, which a table without times cannot show to be common to its rows. */
+static bool has_slow_noise(const imk_triad *triad)
+{
+    bool any = false;
+    for (int axis = 0; axis < triad->axis_count; axis++)
+        any = any || triad->noise.bias_instability.value[axis] > 0 ||
+              triad->noise.random_walk.value[axis] > 0;
+    return triad->present && (any || triad->noise.gauss_markov_count > 0);
+}
+
+static bool has_parameters(const imk_calibrate_log *b, int sensor)
+{
+    size_t p = 0;
+    while (p < b->result->parameter_count && b->result->parameter[p].sensor != sensor)
+        p++;
+    return p < b->result->parameter_count;
+}
+
+/* What the means of a table leave open. */
+static void add_means(const imk_calibrate_log *b, const imk_calibrate_record *log, imk_verdict *v)
+{
+    static const int groups[2] = {IMK_GROUP_GYRO, IMK_GROUP_ACCEL};
+    const imk_model_parameter scale = {IMK_GYRO, IMK_MODEL_SCALE_FACTOR, 0, 0};
+    const bool turns = log->record.axis_count[0] == 0 || imk_calibrate_find(b, scale) >= 0;
+    bool slow = false;
+    if (!log->record.means || !b->result)
+        return;
+    for (int sensor = 1; sensor >= 0; sensor--) {
+        const imk_group_fit *fit = &b->result->group[groups[sensor]];
+        if (!has_parameters(b, sensor))
+            continue;
+        slow = slow || has_slow_noise(imk_model_triad(&b->calibration->model, sensor));
+        if (!log->no_sigma[sensor] || fit->count == 0)
+            continue;
+        const imk_unit unit =
+            imk_unit_readable(imk_unit_of(imki_sensor_units[sensor]).dimension, fit->rms);
+        add(v, imki_calibrate_say(
+                   IMK_FINDING_NOTE, "noise_of_residuals",
+                   "%.150s does not say how well the %s means are known: their noise is taken from "
+                   "the scatter of the residuals, %.3g %s rms, with %.1f degrees of freedom",
+                   log->path, imki_sensor_titles[sensor], fit->rms / unit.scale, unit.text,
+                   fit->degrees_of_freedom));
+    }
+    if (!turns && log->procedure == IMK_PROCEDURE_MULTIPOSITION && log->settings.gyro_turns)
+        add(v, imki_calibrate_say(IMK_FINDING_NOTE, "no_turns",
+                                  "%.150s has no turns: the scale factors and misalignments of the "
+                                  "gyros are left as before",
+                                  log->path));
+    if (slow)
+        add(v, imki_calibrate_say(
+                   IMK_FINDING_NOTE, "no_times",
+                   "%.150s has no times: the slow noise that the model states is not included "
+                   "beyond what the residuals show",
+                   log->path));
+}
+
 /* What a g-sensitivity that is not determined, or not estimated, does to the biases. */
 static void add_considered(const imk_calibrate_log *b, imk_verdict *v)
 {
@@ -301,6 +357,7 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
                                        plain.text));
         }
         add_undetermined(b, log, &v);
+        add_means(b, log, &v);
         add_thermal(&v, log);
         imki_turns_verdict(b, log, &v);
     }

@@ -55,6 +55,12 @@ static size_t too_short(const message *to, const imk_calibrate_record *log, cons
             return say(to, "%s: %s needs at least %g %s, found %g%s%s", log->path, name,
                        error->limit, error->limit > 1 ? many[k] : things[k], error->value,
                        due[0] ? ": " : "", due);
+    if (strcmp(error->field, "samples") == 0 && !log->record.means &&
+        imk_procedure_takes_means(log->procedure) && imk_calibrate_looks_like_means(log))
+        return say(to,
+                   "%s has %zu rows, and most are in another attitude than the row before: if each "
+                   "row is the mean of a pose at rest, add --pose-means; a log needs %g samples",
+                   log->path, log->record.count, error->limit);
     if (strcmp(error->field, "temperature") == 0)
         return say(to,
                    "%s: the temperature varies by %.3g K; at least %.3g K are needed to estimate "
@@ -70,6 +76,11 @@ static size_t key_missing(const message *to, const imk_calibrate_record *log,
 {
     const char *name = imk_procedure_name(log->procedure);
     const bool also = error->expected[0] && log->procedure == IMK_PROCEDURE_SPIN;
+    if (log->record.means && strncmp(error->field, "reference", 9) == 0)
+        return say(to,
+                   "%s: %s needs the force that acted on the unit in each pose: add columns "
+                   "reference_force_x [g] and so on to the table",
+                   log->path, name);
     if (strncmp(error->field, "reference", 9) == 0)
         return say(
             to,

@@ -303,6 +303,11 @@ imki_calibrate_message imki_message_on_log(const imk_calibrate_log *b,
     case IMK_DIAGNOSTIC_NEVER_STATIC:
         return never_static(b, log);
     case IMK_DIAGNOSTIC_NEVER_MOVES:
+        if (log->record.means)
+            return imki_calibrate_say(
+                IMK_FINDING_FAILURE, "never_moves",
+                "all rows are of one attitude: --pose-means needs a row for each of several "
+                "attitudes; if the rows are the samples of a log, leave --pose-means out");
         return imki_calibrate_say(
             IMK_FINDING_FAILURE, "never_moves",
             "the unit is stationary in one pose all the time: turn the unit to other poses, "

@@ -36,8 +36,9 @@ static void show_parameters(const imk_calibration_result *r, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_fit(const imk_calibration_result *r, imk_result *result)
+static void show_fit(const imk_calibrate_log *b, imk_result *result)
 {
+    const imk_calibration_result *r = b->result;
     static const char *const names[IMK_GROUPS] = {"gyro", "accel", "turn"};
     static const char *const units[IMK_GROUPS] = {"rad/s", "m/s^2", "rad"};
     imk_result_object(result, "fit");
@@ -48,9 +49,11 @@ static void show_fit(const imk_calibration_result *r, imk_result *result)
         imk_result_object(result, names[g]);
         imk_result_count(result, "count", (long long)fit->count);
         imk_result_count(result, "refused", (long long)fit->refused);
-        imk_result_number(result, "chi_square", fit->chi_square);
+        if (!imki_no_sigma(b, g))
+            imk_result_number(result, "chi_square", fit->chi_square);
         imk_result_number(result, "degrees_of_freedom", fit->degrees_of_freedom);
-        imk_result_number(result, "factor", fit->factor);
+        if (!imki_no_sigma(b, g))
+            imk_result_number(result, "factor", fit->factor);
         imk_result_quantity(result, "rms", fit->rms, units[g]);
         imk_result_end(result);
     }
@@ -68,8 +71,14 @@ static void show_observations(const imk_calibrate_log *b, imk_result *result)
         const imk_test_record *record = c->record[o->record];
         imk_result_object(result, NULL);
         imk_result_text(result, "log", record->name);
-        imk_result_quantity(result, "begin", imk_test_record_time(record, o->begin), "s");
-        imk_result_quantity(result, "length", (double)(o->end - o->begin) * record->dt, "s");
+        if (record->means) {
+            imk_result_count(result, "row", (long long)o->begin + 1);
+            if (imki_label_of(record, o->begin))
+                imk_result_text(result, "label", imki_label_of(record, o->begin));
+        } else {
+            imk_result_quantity(result, "begin", imk_test_record_time(record, o->begin), "s");
+            imk_result_quantity(result, "length", (double)(o->end - o->begin) * record->dt, "s");
+        }
         imk_result_numbers(result, "force", 3,
                            o->knowledge == IMK_INPUT_GRAVITY ? o->vertical : o->force);
         imk_result_numbers(result, "accel_residual", 3, o->residual[1]);
@@ -198,7 +207,10 @@ static void show_inputs(const imk_calibrate_log *b, imk_result *result)
         imk_result_text(result, "procedure", procedure_name(b, log));
         imk_result_count(result, "rows", (long long)log->record.count);
         imk_result_count(result, "left_out", (long long)log->dropped);
-        imk_result_quantity(result, "interval", log->record.dt, "s");
+        if (log->record.means)
+            imk_result_flag(result, "pose_means", true);
+        else
+            imk_result_quantity(result, "interval", log->record.dt, "s");
         imk_result_count(result, "intervals_at_rest", (long long)log->interval_count);
         show_thermal(log->thermal, result);
         imk_result_end(result);
@@ -228,7 +240,7 @@ static void show_data(const imk_calibrate_log *b, const imk_verdict *v, const ch
     imk_result_end(result);
     imk_result_text(result, "frame", imk_triad_frame_name(b->calibration->frame));
     show_parameters(b->result, result);
-    show_fit(b->result, result);
+    show_fit(b, result);
     show_observations(b, result);
     imki_show_turns(b, result);
     show_runs(b, result);

@@ -30,7 +30,12 @@ void imki_scale_causes(const imk_calibrate_log *b, int sensor, double ratio, boo
                        imki_text *to);
 /* calibrate_untestable.c: a note of what another sound unit would show as well. */
 void imki_untestable(const imk_calibrate_log *b, imk_verdict *verdict);
-/* calibrate_words.c: the verdict in one message. */
+/* calibrate_words.c: nobody stated sigmas for the readings of this group, the scatter of its
+ * residuals is all there is. */
+bool imki_no_sigma(const imk_calibrate_log *b, int group);
+/* The text that names a row; NULL: it has none. */
+const char *imki_label_of(const imk_test_record *record, size_t row);
+/* The verdict in one message. */
 void imki_calibrate_summary(const imk_calibrate_log *b, const imk_verdict *verdict, char *text,
                             size_t size);
 /* On frame and gravity, what was left out and what is correlated. */

@@ -139,11 +139,14 @@ void imki_fit_table(const imk_calibrate_log *b, imk_result *result)
             continue;
         const imk_unit unit = imk_unit_readable(imk_unit_of(si[g]).dimension, fit->rms);
         imk_table_row(table, "%s\t%zu\t%zu", names[g], fit->count, fit->refused);
-        if (fit->degrees_of_freedom >= 0.5)
-            imk_table_add(table, "%.4g / %.1f", fit->chi_square, fit->degrees_of_freedom);
+        if (imki_no_sigma(b, g))
+            imk_table_add(table, "- / %.1f\t-", fit->degrees_of_freedom);
+        else if (fit->degrees_of_freedom >= 0.5)
+            imk_table_add(table, "%.4g / %.1f\t%.3g", fit->chi_square, fit->degrees_of_freedom,
+                          fit->factor);
         else
-            imk_table_add(table, "-");
-        imk_table_add(table, "%.3g\t%.4g %s", fit->factor, fit->rms / unit.scale, unit.text);
+            imk_table_add(table, "-\t%.3g", fit->factor);
+        imk_table_add(table, "%.4g %s", fit->rms / unit.scale, unit.text);
     }
     imki_turn_fit(b, table);
     imk_result_gap(result);
@@ -173,17 +176,31 @@ static void add_finite(imk_table *table, const char *format, double value)
         imk_table_add(table, "%s", "");
 }
 
+/* Rows of a table have a number and perhaps a text, stretches of a log a time and a length. */
+static void begin_pose(imk_table *table, const char *name, const imk_test_record *record,
+                       const imk_observation *o)
+{
+    if (record->means) {
+        const char *label = imki_label_of(record, o->begin);
+        imk_table_row(table, "%.30s\trow %zu\t%s", name, o->begin + 1, label ? label : "");
+    } else {
+        imk_table_row(table, "%.30s\t%.2f\t%.2f", name, imk_test_record_time(record, o->begin),
+                      (double)(o->end - o->begin) * record->dt);
+    }
+}
+
 void imki_pose_table(const imk_calibrate_log *b, imk_result *result)
 {
     const bool several = b->count > 1;
     imki_turn_table(b, result);
     if (imki_has_only_turns(b))
         return;
+    bool times = false;
+    for (size_t k = 0; k < b->count; k++)
+        times = times || !b->record[k].record.means;
     imk_table *table = imk_result_table(result, 0);
-    imk_table_row(table,
-                  "%s\tfrom [s]\tlength [s]\tforce along\t[degC]\taccel [mg]\tgyro [deg/s]\t"
-                  "sigmas\t",
-                  several ? "log" : "");
+    imk_table_row(table, "%s\t%s\t%s\tforce along\t[degC]\taccel [mg]\tgyro [deg/s]\tsigmas\t",
+                  several ? "log" : "", times ? "from [s]" : "pose", times ? "length [s]" : "");
     for (size_t k = 0; k < b->calibration->observation_count; k++) {
         const imk_observation *o = &b->calibration->observation[k];
         if (imki_is_of_turns(b, o))
@@ -191,9 +208,7 @@ void imki_pose_table(const imk_calibrate_log *b, imk_result *result)
         const imk_test_record *record = b->calibration->record[o->record];
         const double *up = o->knowledge == IMK_INPUT_GRAVITY ? o->vertical : o->force;
         const double norm = imki_norm3(up);
-        imk_table_row(table, "%.30s\t%.2f\t%.2f", several ? record->name : "",
-                      imk_test_record_time(record, o->begin),
-                      (double)(o->end - o->begin) * record->dt);
+        begin_pose(table, several ? record->name : "", record, o);
         if (norm > 0)
             imk_table_add(table, "%+.3f %+.3f %+.3f", up[0] / norm, up[1] / norm, up[2] / norm);
         else

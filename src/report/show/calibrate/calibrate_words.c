@@ -156,6 +156,30 @@ static void show_fixtures(const imk_calibrate_log *b, imk_result *result)
     free(list.bytes);
 }
 
+bool imki_no_sigma(const imk_calibrate_log *b, int group)
+{
+    bool any = false;
+    for (size_t k = 0; k < b->count; k++)
+        any = any || (group == IMK_GROUP_GYRO && b->record[k].no_sigma[0]) ||
+              (group == IMK_GROUP_ACCEL && b->record[k].no_sigma[1]);
+    return any;
+}
+
+const char *imki_label_of(const imk_test_record *record, size_t row)
+{
+    const int section = record->section ? record->section[row] : -1;
+    return section >= 0 ? record->section_name[section] : NULL;
+}
+
+/* "row 3 (x_up)" of a table. */
+static void list_row(imki_text *list, const imk_test_record *record, size_t row)
+{
+    const char *label = imki_label_of(record, row);
+    imki_list_item(list, "row %zu", row + 1);
+    if (label)
+        imki_text_add(list, " (%s)", label);
+}
+
 /* Observations and turns without weight, by time. */
 static void show_refused(const imk_calibrate_log *b, imk_result *result)
 {
@@ -172,9 +196,13 @@ static void show_refused(const imk_calibrate_log *b, imk_result *result)
             c->record[c->observation[is_turn ? (size_t)c->turn[i].from : i].record];
         if (weight > 0)
             continue;
-        imki_list_item(&list, "%s at %.2f s%s%s", is_turn ? "the turn" : "the observation",
-                       imk_test_record_time(record, begin), b->count > 1 ? " of " : "",
-                       b->count > 1 ? record->name : "");
+        if (record->means)
+            list_row(&list, record, begin);
+        else
+            imki_list_item(&list, "%s at %.2f s", is_turn ? "the turn" : "the observation",
+                           imk_test_record_time(record, begin));
+        if (b->count > 1)
+            imki_text_add(&list, " of %s", record->name);
         listed++;
     }
     if (total > listed)
