@@ -47,6 +47,7 @@ static void run(size_t which, size_t benches, uint64_t seed, double bad)
         session_log(b, seed * 1000000 + i, bad);
         if (session_solve(b, &error) == IMK_OK) {
             coverage_add(&count, &b->result, &b->truth, 0.95);
+            count.doubted += coverage_doubts(&b->calibration, &b->result);
             continue;
         }
         if (count.failed++ == 0)

@@ -51,18 +51,39 @@ int main(int argc, char **argv)
         {"wrong: ferraris, three times, placement 0.3 deg, 0.1 stated",
          IMK_PROCEDURE_FERRARIS,
          {.rounds = 3, .hold = 8, .turn = 6, .placement = 5.2e-3, .stated = 1.0 / 3.0}},
-        {"unequal axes, equal pose errors: sixposition, exact, each face once",
+        {"equal pose errors: sixposition, exact, each face once",
+         IMK_PROCEDURE_SIXPOSITION,
+         {.rounds = 1, .hold = 8, .unequal = 1.0, .push = 3e-3}},
+        {"axes 1 : 2 : 4, equal pose errors: sixposition, exact, each face once",
          IMK_PROCEDURE_SIXPOSITION,
          {.rounds = 1, .hold = 8, .unequal = 2.0, .push = 3e-3}},
-        {"unequal axes, equal pose errors: sixposition, exact, each face three times",
+        {"axes 1 : 4 : 16, equal pose errors: sixposition, exact, each face once",
+         IMK_PROCEDURE_SIXPOSITION,
+         {.rounds = 1, .hold = 8, .unequal = 4.0, .push = 3e-3}},
+        {"axes 1 : 4 : 16: sixposition, exact, each face once",
+         IMK_PROCEDURE_SIXPOSITION,
+         {.rounds = 1, .hold = 8, .unequal = 4.0}},
+        {"axes 1 : 2 : 4, equal pose errors: sixposition, exact, each face three times",
          IMK_PROCEDURE_SIXPOSITION,
          {.rounds = 3, .hold = 8, .unequal = 2.0, .push = 3e-3}},
-        {"unequal axes, equal pose errors: sixposition, three times, placement 0.1 deg",
+        {"axes 1 : 4 : 16, equal pose errors: sixposition, exact, each face three times",
+         IMK_PROCEDURE_SIXPOSITION,
+         {.rounds = 3, .hold = 8, .unequal = 4.0, .push = 3e-3}},
+        {"axes 1 : 2 : 4, equal pose errors: sixposition, once, placement 0.1 deg",
+         IMK_PROCEDURE_SIXPOSITION,
+         {.rounds = 1, .hold = 8, .placement = 1.7e-3, .unequal = 2.0, .push = 3e-3}},
+        {"axes 1 : 2 : 4, equal pose errors: sixposition, three times, placement 0.1 deg",
          IMK_PROCEDURE_SIXPOSITION,
          {.rounds = 3, .hold = 8, .placement = 1.7e-3, .unequal = 2.0, .push = 3e-3}},
-        {"unequal axes, equal pose errors: ferraris, three times, placement 0.1 deg",
+        {"axes 1 : 4 : 16, equal pose errors: sixposition, three times, placement 0.1 deg",
+         IMK_PROCEDURE_SIXPOSITION,
+         {.rounds = 3, .hold = 8, .placement = 1.7e-3, .unequal = 4.0, .push = 3e-3}},
+        {"axes 1 : 2 : 4, equal pose errors: ferraris, three times, placement 0.1 deg",
          IMK_PROCEDURE_FERRARIS,
-         {.rounds = 3, .hold = 8, .turn = 6, .placement = 1.7e-3, .unequal = 2.0, .push = 3e-3}}};
+         {.rounds = 3, .hold = 8, .turn = 6, .placement = 1.7e-3, .unequal = 2.0, .push = 3e-3}},
+        {"axes 1 : 4 : 16, equal pose errors: ferraris, three times, placement 0.1 deg",
+         IMK_PROCEDURE_FERRARIS,
+         {.rounds = 3, .hold = 8, .turn = 6, .placement = 1.7e-3, .unequal = 4.0, .push = 3e-3}}};
     const int benches = argc > 1 ? atoi(argv[1]) : 3000;
     const uint64_t seed = argc > 2 ? (uint64_t)atoll(argv[2]) : 1;
     const size_t only = argc > 3 ? (size_t)atoi(argv[3]) : sizeof plans;
@@ -70,6 +91,7 @@ int main(int argc, char **argv)
         fputs("usage: coverage_six_position [BENCHES] [SEED] [PLAN]\n", stderr);
         return 2;
     }
+    size_t outside = 0;
     session *b = session_new();
     for (size_t i = 0; i < sizeof plans / sizeof *plans; i++) {
         static coverage_count count;
@@ -80,6 +102,7 @@ int main(int argc, char **argv)
             imk_error error;
             if (session_run(b, &plans[i].session, plans[i].procedure, seed, (uint32_t)n, &error)) {
                 coverage_add(&count, &b->result, &b->truth, 0.95);
+                count.doubted += coverage_doubts(&b->calibration, &b->result);
             } else if (count.failed++ == 0) {
                 printf("bench %d: %s %s %s\n", n, imk_status_name(error.status), error.field,
                        error.expected);
@@ -87,9 +110,9 @@ int main(int argc, char **argv)
         }
         printf("%s: %zu benches, %zu refused\n", plans[i].name, count.benches, count.failed);
         if (count.benches > 0)
-            coverage_print(&count, stdout);
+            outside += coverage_print(&count, stdout);
         fflush(stdout);
     }
     session_free(b);
-    return 0;
+    return outside > 0;
 }

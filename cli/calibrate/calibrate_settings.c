@@ -37,6 +37,8 @@ static int take_counts(session *b)
         {"gyro-zero", o->zero_offset[0], "count", &s->zero_offset[0]},
         {"accel-sensitivity", o->sensitivity[1], "count/(m/s^2)", &s->sensitivity[1]},
         {"accel-zero", o->zero_offset[1], "count", &s->zero_offset[1]},
+        {"gyro-range", o->range[0], "deg/s", &s->range[0]},
+        {"accel-range", o->range[1], "m/s^2", &s->range[1]},
     };
     int code = -1;
     for (size_t k = 0; code < 0 && k < sizeof given / sizeof *given; k++)

@@ -69,6 +69,11 @@ static const option test_options[] = {
      .help = "counts of the accelerometers at zero input, such as \"32768 count\""},
     {"gyro-zero", OPTION_TEXT, AT(zero_offset[0]), .value = "NUMBER",
      .help = "counts of the gyros at zero input"},
+    {"accel-range", OPTION_TEXT, AT(range[1]), .value = "RANGE",
+     .help = "full scale of the accelerometers, such as \"16 g\": readings at it are left out as "
+             "saturated, and the model states it"},
+    {"gyro-range", OPTION_TEXT, AT(range[0]), .value = "RANGE",
+     .help = "full scale of the gyros, such as \"2000 deg/s\""},
     {"robust", OPTION_CHOICE, AT(robust), .value = "CHOICE", .choices = "yes|no",
      .help = "yes (default): observations that do not fit the others lose their weight"},
     {"estimator", OPTION_CHOICE, AT(estimator), .value = "CHOICE",

@@ -51,6 +51,8 @@ typedef struct imk_calibrate_log_settings {
     const imk_model *model; /**< sensitivities, and terms that are not estimated; default NULL */
     /** Nominal sensitivity of gyros [count/(rad/s)] and accelerometers [count/(m/s^2)]. */
     imk_calibrate_counts sensitivity[2];
+    imk_calibrate_counts range[2]; /**< full scale of gyros [rad/s], accelerometers [m/s^2], above
+                                      0: readings at it are saturated, and the model states it */
     imk_calibrate_counts zero_offset[2]; /**< readings at zero of gyros, accelerometers [count] */
     /* what is estimated */
     const char *estimate; /**< names of terms as of imk_calibrate_terms(), separated by commas;

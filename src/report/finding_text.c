@@ -352,8 +352,10 @@ static const struct message {
                         "{2?}fast{2!}slow{?}, as if the sampling rate were "
                         "{3.5g} Hz and not {4.5g} Hz; check --rate, or the times"},
     /* calibrate_set_up.c */
-    {"counts_of_axes", "--{name}-sensitivity and --{name}-zero take one number, or one for each of "
-                       "{0} axes"},
+    {"counts_of_axes",
+     "--{name}-sensitivity, --{name}-range and --{name}-zero take one number, or one for each of "
+     "{0} axes"},
+    {"no_range", "--{name}-range: the full scale must be above 0"},
     {"no_sensitivity", "--{name}-sensitivity: a sensitivity of 0 makes no counts"},
     {"zero_of_nothing", "--{name}-zero needs --{name}-sensitivity"},
     {"not_in_counts", "--{name}-{0?}sensitivity{0!}zero{?} is for readings in counts, but those of "

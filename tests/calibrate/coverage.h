@@ -6,12 +6,16 @@
 #define IMUKIT_TEST_COVERAGE_H
 
 #include "imukit/calibration.h"
+#include "imukit/distributions.h"
+#include "imukit/procedure.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 typedef struct coverage_count {
     size_t benches, failed; /* tests done; and refused or not solved */
+    size_t doubted;         /* of those done: with a warning about scatter or placements */
     size_t parameter_count;
     imk_model_parameter parameter[IMK_CORRELATED_MAX];
     size_t held[IMK_CORRELATED_MAX];   /* interval holds the truth */
@@ -34,6 +38,21 @@ static inline void coverage_add(coverage_count *c, const imk_calibration_result 
         c->sum[p] += error / result->sigma[p];
         c->square[p] += error * error / (result->sigma[p] * result->sigma[p]);
     }
+}
+
+/* A warning that `imukit calibrate` prints about the scatter of this result. */
+static inline bool coverage_doubts(const imk_calibration *calibration,
+                                   const imk_calibration_result *result)
+{
+    imk_diagnostic_finding found[16];
+    const size_t count = imk_solution_diagnostics(calibration, result, 16, found);
+    const imk_group_fit *p = &result->placement;
+    bool doubts = p->degrees_of_freedom >= 1.0 &&
+                  imk_gamma_upper(0.5 * p->degrees_of_freedom, 0.5 * p->chi_square) < 1e-3;
+    for (size_t i = 0; i < count; i++)
+        doubts = doubts || found[i].kind == IMK_DIAGNOSTIC_RESIDUALS ||
+                 found[i].kind == IMK_DIAGNOSTIC_OUTLIERS;
+    return doubts;
 }
 
 /* Per parameter: share held, bias in sigmas, root mean square in sigmas. */
@@ -65,15 +84,42 @@ static inline size_t coverage_least_held(size_t n, double share, double false_al
     return n;
 }
 
-/* A line per parameter. */
-static inline void coverage_print(const coverage_count *c, FILE *out)
+/* What the share held says of 93 to 97 %: "" where it is within, or outside by chance only (three
+ * standard deviations of a true share at the limit). */
+static inline const char *coverage_verdict(const coverage_count *c, size_t p)
 {
+    const double chance = 3.0 * sqrt(0.95 * 0.05 / (double)c->benches);
+    const double share = coverage_share(c, p);
+    return share < 0.93 - chance   ? "  BELOW"
+           : share > 0.97 + chance ? "  ABOVE"
+           : share < 0.93          ? "  below, perhaps by chance"
+           : share > 0.97          ? "  above, perhaps by chance"
+                                   : "";
+}
+
+/* A line per parameter. @return parameters outside the band beyond chance, 0 where the results are
+ * doubted */
+static inline size_t coverage_print(const coverage_count *c, FILE *out)
+{
+    size_t outside = 0, within = 0;
     for (size_t p = 0; p < c->parameter_count; p++) {
         char name[IMK_MODEL_PARAMETER_NAME];
+        const char *verdict = coverage_verdict(c, p);
+        outside += strcmp(verdict, "  BELOW") == 0 || strcmp(verdict, "  ABOVE") == 0;
+        within += verdict[0] == '\0';
         if (imk_model_parameter_name(c->parameter[p], name) == IMK_OK)
-            fprintf(out, "  %-40s held %6.2f %%   bias %+.3f sigma   rms %.3f sigma\n", name,
-                    100.0 * coverage_share(c, p), coverage_bias(c, p), coverage_rms(c, p));
+            fprintf(out, "  %-40s held %6.2f %%   bias %+.3f sigma   rms %.3f sigma%s\n", name,
+                    100.0 * coverage_share(c, p), coverage_bias(c, p), coverage_rms(c, p), verdict);
     }
+    const bool told = c->doubted >= 0.99 * (double)c->benches;
+    fprintf(out,
+            "  %zu of %zu parameters within 93 to 97 %%, %zu outside beyond chance; %.1f %% of "
+            "the benches doubted%s\n",
+            within, c->parameter_count, outside, 100.0 * (double)c->doubted / (double)c->benches,
+            outside == 0 ? ""
+            : told       ? ": told"
+                         : ": FAIL");
+    return told ? 0 : outside;
 }
 
 #endif

@@ -20,6 +20,7 @@ typedef struct multiposition_session {
     imk_model truth;   /* what is simulated */
     imk_model drift;   /* its bias instability alone */
     imk_model nominal; /* what the solver is told */
+    int poses;         /* BENCH_POSES at most */
     double push;       /* 1 sigma of a force on every axis of each hold, alike [m/s^2] */
     imk_trajectory_piece *piece;
     size_t piece_capacity;
@@ -94,9 +95,9 @@ static inline imk_status session_motion(multiposition_session *b, uint64_t seed,
     const double turn = 6.283185307179586;
     imk_motion_step step[BENCH_STEPS];
     size_t steps = 0, pieces = 0;
-    for (int i = 0; i < BENCH_POSES; i++) {
-        const int k = i * 7 % BENCH_POSES;
-        const double pitch = asin(1.0 - (2.0 * k + 1.0) / BENCH_POSES);
+    for (int i = 0; i < b->poses; i++) {
+        const int k = i * 7 % b->poses;
+        const double pitch = asin(1.0 - (2.0 * k + 1.0) / b->poses);
         const double roll = remainder(2.399963229728653 * k, turn); /* by the golden angle */
         const double yaw =
             turn * session_uniform(imk_random_seeded(seed), session_stream(run, 0), (uint64_t)i);
@@ -134,6 +135,7 @@ static inline multiposition_session *session_start(void)
         return NULL;
     session_truth(b);
     b->rows = (size_t)BENCH_RATE * BENCH_POSES * (BENCH_HOLD + BENCH_TURN);
+    b->poses = BENCH_POSES;
     for (int c = 0; c < 6; c++) {
         b->value[c] = malloc(b->rows * sizeof(double));
         b->slow[c] = malloc(b->rows * sizeof(double));
@@ -141,6 +143,13 @@ static inline multiposition_session *session_start(void)
     b->workspace_size = (size_t)1 << 23;
     b->workspace = malloc(b->workspace_size);
     return b;
+}
+
+/* Fewer poses. */
+static inline void session_poses(multiposition_session *b, int poses)
+{
+    b->poses = poses;
+    b->rows = (size_t)BENCH_RATE * (size_t)poses * (BENCH_HOLD + BENCH_TURN);
 }
 
 static inline void session_stop(multiposition_session *b)
@@ -218,7 +227,7 @@ static inline void session_push(multiposition_session *b, uint64_t seed, uint32_
     double normal[3 * BENCH_POSES];
     imk_random_normals(imk_random_seeded(seed), session_stream(run, 100), 0, 3 * BENCH_POSES,
                        normal);
-    for (int i = 0; i < 3 * BENCH_POSES; i++) {
+    for (int i = 0; i < 3 * b->poses; i++) {
         const size_t begin =
             ((size_t)(i / 3) * (BENCH_HOLD + BENCH_TURN) + BENCH_TURN) * BENCH_RATE;
         const double force = b->push * normal[i] * b->nominal.accel.sensitivity.value[i % 3];
@@ -276,7 +285,7 @@ static inline imk_status session_run(multiposition_session *b, uint64_t seed, ui
     for (int i = 0; status == IMK_OK && i < bad; i++) {
         const uint64_t stream = session_stream(run, 1 + i);
         /* Spread over the log, so that no pose is taken twice. */
-        const int pose = (int)((i + session_uniform(random, stream, 3)) * BENCH_POSES / bad);
+        const int pose = (int)((i + session_uniform(random, stream, 3)) * b->poses / bad);
         session_spoil(b, pose, random, stream);
     }
     if (status == IMK_OK && b->push > 0.0)
@@ -288,6 +297,7 @@ static inline imk_status session_run(multiposition_session *b, uint64_t seed, ui
     if (status == IMK_OK) {
         const imk_model truth = session_true_model(b);
         coverage_add(count, &b->result, &truth, 0.95);
+        count->doubted += coverage_doubts(&b->calibration, &b->result);
     } else {
         count->failed++;
     }

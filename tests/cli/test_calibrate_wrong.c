@@ -3,6 +3,8 @@
  * and what to do; and a sound test of few holds loses none of them. */
 #include "run_command.h"
 
+#include "imukit/model_file.h"
+
 #define PLACE "--position '48.1 deg, 11.6 deg, 520 m'"
 #define POSES "-p multiposition " PLACE
 
@@ -165,6 +167,33 @@ static void counts_are_for_logs_in_counts(void **state)
     sweep();
 }
 
+/* A full scale of the data sheet ends in the model, and readings beyond it are saturated. */
+static void ranges_are_written_and_checked(void **state)
+{
+    (void)state;
+    imk_model model;
+    imk_error error;
+    write_turns();
+    const char *line = "$I calibrate turns.csv -p ferraris " PLACE
+                       " --gyro-range '2000 deg/s' --accel-range '16 g' --strict -o ranged.yaml";
+    assert_int_equal(run(line), 0);
+    CHECK_OK(imk_model_read("ranged.yaml", &model, NULL, &error));
+    for (int i = 0; i < 3; i++) {
+        CHECK_RELATIVE(model.gyro.range.value[i], 2000 * 0.017453292519943295, 1e-9);
+        CHECK_RELATIVE(model.accel.range.value[i], 16 * 9.80665, 1e-9);
+    }
+    check_says("$I calibrate turns.csv -p ferraris " PLACE " --gyro-range '0 deg/s'", 2,
+               "--gyro-range: the full scale must be above 0");
+    check_says("$I calibrate turns.csv -p ferraris " PLACE " --accel-range '16 deg/s'", 2,
+               "--accel-range \"16 deg/s\": expected one number");
+    /* x reads 1 g in two of the faces, beyond a range of 9 m/s^2: these holds are left out. */
+    assert_int_not_equal(run("$I calibrate turns.csv -p ferraris " PLACE
+                             " --accel-range '9 160 160 m/s^2' --strict"),
+                         0);
+    check_contains(err, "found 4: add a hold with x up, x down", "saturated");
+    sweep();
+}
+
 /* What changes in a model is a screen, not its correlations. */
 static void changes_are_few_lines(void **state)
 {
@@ -193,6 +222,7 @@ int main(void)
         cmocka_unit_test(missing_readings_are_told),
         cmocka_unit_test(counts_are_for_logs_in_counts),
         cmocka_unit_test(changes_are_few_lines),
+        cmocka_unit_test(ranges_are_written_and_checked),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -225,8 +225,14 @@ static void apply_covariance(const imki_normal *n, int count, const int *place, 
     }
 }
 
+void imki_row_project(const imki_normal *n, const imki_row *row, double *seen)
+{
+    int place[IMKI_GLOBALS_MAX];
+    (void)project(n, row, seen, place);
+}
+
 /* The part of the locals. */
-static double through_locals(const imki_normal *n, const imki_row *x, const imki_row *y)
+double imki_through_locals(const imki_normal *n, const imki_row *x, const imki_row *y)
 {
     double sum = 0.0;
     for (int a = 0; a < x->locals; a++)
@@ -248,7 +254,7 @@ void imki_rows_covariance(const imki_normal *n, const imki_row *row, int count, 
         places[i] = project(n, &row[i], seen[i], place[i]);
         apply_covariance(n, places[i], place[i], seen[i], moved);
         for (int k = 0; k <= i; k++) {
-            double sum = through_locals(n, &row[i], &row[k]);
+            double sum = imki_through_locals(n, &row[i], &row[k]);
             for (int c = 0; c < places[k]; c++)
                 sum += moved[place[k][c]] * seen[k][place[k][c]];
             matrix[i * count + k] = matrix[k * count + i] = sum;

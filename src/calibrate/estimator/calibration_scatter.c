@@ -13,9 +13,14 @@
  *
  * the restricted likelihood [PATTERSON1971] and the price of a parameter [AKAIKE1978]. Axes that
  * have the same sigmas cannot tell the first from the third; it is the same to them, and the first
- * stays. */
+ * stays.
+ *
+ * Few residuals do not tell which form is right. So the values are those of the chosen form, and
+ * the intervals those that all forms together hold, each weighted by exp(-criterion/2)
+ * [HOETING1999]. */
 #include "estimator_internal.h"
 
+#include "imukit/distributions.h"
 #include "imukit/elementary.h"
 
 #include <math.h>
@@ -25,8 +30,8 @@
 static const double least_freedom = 3.0, least_axis_freedom = 4.0, least_added_freedom = 1.0;
 /* Errors of poses are looked for where the factor is above this. */
 static const double least_excess = 0.9;
-/* By how much another form must be better than one factor. */
-static const double least_gain = 0.0;
+/* Axes that differ by more than their noise within holds says are not usual: -2 ln of 0.14. */
+static const double unlike_price = 4.0;
 
 typedef struct form {
     bool by_axis[2];
@@ -109,7 +114,7 @@ static double try_form(imki_estimator *e, int sensor, bool by_axis, bool added, 
         return HUGE_VAL;
     for (int axis = 0; axis < (by_axis ? IMK_AXES_MAX : 1); axis++)
         factors += fit->scaled[imki_part_of(e, sensor, axis)] != 0.0;
-    return deviance(e) + 2.0 * factors + (added ? least_gain : 1.0);
+    return deviance(e) + 2.0 * factors + (by_axis ? unlike_price : 0.0);
 }
 
 static imk_status choose(imki_estimator *e, int sensor, imki_fit *fit)
@@ -131,6 +136,137 @@ static imk_status choose(imki_estimator *e, int sensor, imki_fit *fit)
     }
     take_form(e, &best);
     return imki_variance_factors(e, 0.01, fit);
+}
+
+/* ---- all forms together -----------------------------------------------------------------------
+ */
+
+enum { FORMS = 4 };
+
+/* Variance and degrees of freedom of a parameter by each form. */
+typedef struct opinions {
+    size_t count;
+    double deviance[FORMS], weight[FORMS];
+    double variance[FORMS][IMK_CORRELATED_MAX], freedom[FORMS][IMK_CORRELATED_MAX];
+} opinions;
+
+static void set_weights(opinions *o)
+{
+    double least = HUGE_VAL, sum = 0.0;
+    for (size_t k = 0; k < o->count; k++)
+        least = fmin(least, o->deviance[k]);
+    for (size_t k = 0; k < o->count; k++)
+        sum += o->weight[k] = imk_exp(0.5 * (least - o->deviance[k]));
+    for (size_t k = 0; k < o->count; k++)
+        o->weight[k] /= sum;
+}
+
+/* Probability that an error of parameter p is beyond +-x. */
+static double beyond(const opinions *o, size_t p, double x)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < o->count; k++)
+        sum += o->weight[k] * imk_f_upper(x * x / o->variance[k][p], 1.0, o->freedom[k][p]);
+    return sum;
+}
+
+/* The degrees of freedom with which Student's interval of 95 % about a sigma is the one that the
+ * forms together hold. It is not narrower than the normal one: the sigma stays that of the
+ * solution.
+ */
+static double combine(const opinions *o, size_t p, double sigma)
+{
+    const double outside = 0.05, upper = 1.0 - 0.5 * outside, ln2 = 0.6931471805599453;
+    double low = imk_normal_quantile(upper) * sigma, high = low;
+    for (size_t k = 0; k < o->count; k++)
+        high = fmax(high, sqrt(o->variance[k][p]) * imk_student_quantile(upper, o->freedom[k][p]));
+    if (!(beyond(o, p, low) > outside * (1.0 + 1e-9))) /* rounding */
+        return (double)INFINITY;
+    for (int halvings = 0; halvings < 40; halvings++) {
+        const double middle = 0.5 * (low + high);
+        *(beyond(o, p, middle) > outside ? &low : &high) = middle;
+    }
+    double least = -2.0, most = 30.0; /* logarithms of the degrees, to base 2 */
+    for (int halvings = 0; halvings < 40; halvings++) {
+        const double middle = 0.5 * (least + most);
+        const double quantile = imk_student_quantile(upper, imk_exp(ln2 * middle));
+        *(quantile > high / sigma ? &least : &most) = middle;
+    }
+    return imk_exp(ln2 * most);
+}
+
+/* What the forms say of the parameters of a sensor; the solution is the chosen one's. */
+static void ask_forms(imki_estimator *e, int sensor, opinions *o)
+{
+    const form chosen = form_of(e);
+    o->count = 0;
+    for (int way = 0; way < FORMS; way++) {
+        const bool by_axis = way & 1, added = way & 2;
+        imki_fit fit;
+        take_form(e, &chosen);
+        imki_point_copy(e, &e->best, &e->now);
+        if (e->added[sensor] > 0.0 || e->by_axis[sensor])
+            for (int axis = 0; axis < IMK_AXES_MAX; axis++)
+                e->factor[imki_part_of(e, sensor, axis)] = 1.0;
+        o->deviance[o->count] = try_form(e, sensor, by_axis, added, &fit);
+        if (!(o->deviance[o->count] < HUGE_VAL))
+            continue;
+        imki_freedoms(e, &fit, o->variance[o->count], o->freedom[o->count]);
+        for (size_t p = 0; p < e->parameters; p++) {
+            const double apart = e->now.global[p] - e->best.global[p];
+            o->variance[o->count][p] += apart * apart;
+        }
+        o->count++;
+    }
+    take_form(e, &chosen);
+    imki_point_copy(e, &e->best, &e->now);
+}
+
+/* By the solution alone. */
+static void ask_solution(imki_estimator *e, const imki_fit *fit, opinions *o)
+{
+    o->count = 1;
+    o->deviance[0] = 0.0;
+    imki_freedoms(e, fit, o->variance[0], o->freedom[0]);
+}
+
+static void combine_all(const imki_estimator *e, int sensor, const opinions *o,
+                        const double *variance, double *freedom)
+{
+    for (size_t p = 0; p < e->parameters; p++)
+        if (sensor < 0 || e->problem->parameter[p].sensor == sensor)
+            freedom[p] = combine(o, p, sqrt(variance[p]));
+}
+
+imk_status imki_scatter_freedoms(imki_estimator *e, imki_fit *fit, double *freedom)
+{
+    opinions o;
+    bool asked = false, estimated[IMKI_PARTS];
+    double variance[IMK_CORRELATED_MAX];
+    for (size_t p = 0; p < e->parameters; p++)
+        variance[p] = e->normal.covariance[p * e->globals + p];
+    ask_solution(e, fit, &o);
+    set_weights(&o);
+    combine_all(e, -1, &o, variance, freedom);
+    imki_point_copy(e, &e->now, &e->best);
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const int group = sensor == IMK_GYRO ? IMK_GROUP_GYRO : IMK_GROUP_ACCEL;
+        if (!imki_sum_group(e, fit, group).estimated)
+            continue;
+        ask_forms(e, sensor, &o);
+        set_weights(&o);
+        asked = true;
+        if (o.count > 1)
+            combine_all(e, sensor, &o, variance, freedom);
+    }
+    if (!asked)
+        return IMK_OK;
+    imki_point_apply(e, &e->now);
+    const imk_status status = imki_estimator_covariance(e);
+    memcpy(estimated, fit->estimated, sizeof estimated);
+    imki_fit_groups(e, fit);
+    memcpy(fit->estimated, estimated, sizeof estimated);
+    return status;
 }
 
 void imki_common_scatter(imki_estimator *e)

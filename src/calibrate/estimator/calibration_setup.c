@@ -81,7 +81,10 @@ static void lay_out(imki_estimator *e, const imk_calibration *c, imki_parts *a)
     e->trial.horizontal = imki_take(a, n * sizeof *e->trial.horizontal);
     e->best.horizontal = imki_take(a, n * sizeof *e->best.horizontal);
     e->best_weight = imki_take(a, (n + m) * number);
-    e->row = imki_take(a, IMKI_ROWS_MAX * sizeof *e->row);
+    e->row = imki_take(a, 2 * IMKI_ROWS_MAX * sizeof *e->row);
+    e->seen = imki_take(a, 2 * IMKI_ROWS_MAX * globals * number);
+    e->moved = imki_take(a, 2 * IMKI_ROWS_MAX * globals * number);
+    e->squares = imki_take(a, IMKI_PARTS * globals * globals * number);
     e->distance = imki_take(a, 3 * (n + m) * number);
     e->sorted = imki_take(a, (n + m) * number);
     e->state = imki_take(a, n + m);

@@ -371,7 +371,9 @@ imk_status imk_calibration_solve(imk_calibration *calibration, imk_calibration_r
         status = solve(&e, &fit, &weakest, error);
     if (status != IMK_OK)
         return status;
-    imki_freedoms(&e, &fit, freedom);
+    status = imki_scatter_freedoms(&e, &fit, freedom);
+    if (status != IMK_OK)
+        return status;
     imki_slow_noise_add(&e, freedom);
     imk_calibration_result *made = e.result;
     memset(made, 0, sizeof *made);

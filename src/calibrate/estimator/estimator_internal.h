@@ -112,7 +112,10 @@ typedef struct imki_estimator {
     double *best_weight; /* per item */
     imki_normal normal;
     imki_slow_noise slow;
-    imki_row *row;    /* IMKI_ROWS_MAX */
+    imki_row *row;    /* 2 IMKI_ROWS_MAX */
+    double *seen;     /* of each of them, what the globals see */
+    double *moved;    /* ... times their covariance */
+    double *squares;  /* IMKI_PARTS globals^2 */
     double *distance; /* per item and group of three: see statistics */
     double *sorted;
     unsigned char *state; /* per item */
@@ -166,6 +169,10 @@ void imki_normal_invert(imki_normal *n);
 /* J Cov J^T of some rows, count x count; and, when not NULL, Cov_global J^T, count x globals. */
 void imki_rows_covariance(const imki_normal *n, const imki_row *row, int count, double *matrix,
                           double *by_globals);
+/* A row as the globals see it when the locals have given way. */
+void imki_row_project(const imki_normal *n, const imki_row *row, double *seen);
+/* What two rows covary through locals that they share, or that turns tie. */
+double imki_through_locals(const imki_normal *n, const imki_row *x, const imki_row *y);
 
 /* ---- calibration_iterate.c ---- */
 /* Integrate the turns at the current point, unless the linearisation at hand is good to a tenth of
@@ -244,7 +251,10 @@ typedef struct imki_group_sum {
 imki_group_sum imki_sum_group(const imki_estimator *e, const imki_fit *fit, int group);
 /* Variance factors until they stay; the solution follows. */
 imk_status imki_variance_factors(imki_estimator *e, double tolerance, imki_fit *fit);
-void imki_freedoms(imki_estimator *e, const imki_fit *fit, double *freedom);
+
+/* ---- calibration_freedom.c: variances of the parameters, with what the factors' errors add, and
+ * their degrees of freedom ---- */
+void imki_freedoms(imki_estimator *e, const imki_fit *fit, double *variance, double *freedom);
 
 /* ---- calibration_slow_noise.c: noise that observations of one record share; does nothing when the
  * model states none ---- */
@@ -258,6 +268,8 @@ void imki_slow_noise_add(imki_estimator *e, double *freedom);
 /* ---- calibration_scatter.c: what is wrong about the sigmas stated ---- */
 /* From the solution with one factor a group: choose by the restricted likelihood, and solve so. */
 imk_status imki_choose_scatter(imki_estimator *e, imki_fit *fit);
+/* Degrees of freedom of the parameters' intervals, by all forms, each by its likelihood. */
+imk_status imki_scatter_freedoms(imki_estimator *e, imki_fit *fit, double *freedom);
 /* Back to one factor a group. */
 void imki_common_scatter(imki_estimator *e);
 

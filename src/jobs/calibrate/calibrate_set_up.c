@@ -189,10 +189,13 @@ static imk_status apply_counts(imk_calibrate_log *b, int sensor, imk_error *erro
     imk_triad *triad = imk_model_triad_to_set(&b->calibration->model, sensor);
     const int axes = triad->axis_count;
     if (!take_counts(sensitivity, axes, triad->sensitivity.value) ||
+        !take_counts(&b->settings.range[sensor], axes, triad->range.value) ||
         !take_counts(&b->settings.zero_offset[sensor], axes, triad->zero_offset.value))
         return imki_fail(&b->findings, error, IMK_ERROR_ARGUMENT, "counts_of_axes",
                          imki_sensor_keys[sensor], IMKI_NUMBERS(axes));
     for (int i = 0; i < axes; i++) {
+        if (b->settings.range[sensor].count > 0 && !(triad->range.value[i] > 0))
+            return refuse(b, "no_range", sensor, error);
         if (sensitivity->count > 0 && triad->sensitivity.value[i] == 0)
             return refuse(b, "no_sensitivity", sensor, error);
         if (triad->zero_offset.value[i] != 0 && triad->sensitivity.value[i] == 0)

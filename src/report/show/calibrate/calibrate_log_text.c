@@ -325,9 +325,11 @@ imki_calibrate_message imki_message_on_log(const imk_calibrate_log *b,
         return imki_calibrate_say(
             IMK_FINDING_WARNING, "saturated",
             "%s %c is at the end of its range in %.3g %% of the log; the affected %s are left out: "
-            "choose a larger range in the device, or %s",
+            "choose a larger range in the device, or %s; --%s-range writes the range into the "
+            "model",
             sensor, imk_axis_letter(d->axis), 100 * d->value, d->sensor == 0 ? "turns" : "poses",
-            d->sensor == 0 ? "turn more slowly" : "choose poses without this axis along gravity");
+            d->sensor == 0 ? "turn more slowly" : "choose poses without this axis along gravity",
+            imki_sensor_keys[d->sensor > 0]);
     case IMK_DIAGNOSTIC_COUNTS:
         return imki_calibrate_say(
             IMK_FINDING_FAILURE, "counts",
