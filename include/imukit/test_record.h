@@ -28,6 +28,7 @@ typedef struct imk_test_record {
     const int *section; /**< per sample: index of the label of a section, -1: none; NULL: none */
     size_t section_count;
     const char *const *section_name; /**< section_count names */
+    const double *mag[3]; /**< magnetometer [T], NaN: missing; all NULL: the log has none */
 } imk_test_record;
 
 IMK_END_C
