@@ -44,6 +44,36 @@ static int take_counts(session *b)
     return code;
 }
 
+/* "48.1 +- 0.2 uT": a number with its 1 sigma, or exact. */
+static int parse_known(const char *option_name, const char *text, const char *unit,
+                       const char *sample, double *value, double *sigma)
+{
+    size_t count = 0;
+    if (!text)
+        return -1;
+    if (imk_quantity_parse(text, text + strlen(text), imk_unit_of(unit).dimension, 1, value, sigma,
+                           &count, NULL, NULL) == IMK_OK &&
+        count == 1)
+        return -1;
+    return command_misused("--%s \"%s\": expected a number and a unit, such as \"%s\"", option_name,
+                           text, sample);
+}
+
+/* The field of the Earth. */
+static int take_field(session *b)
+{
+    const calibrate_options *o = b->options;
+    imk_calibrate_log_settings *s = &b->settings;
+    int code = parse_known("field", o->field, "T", "48.1 +- 0.2 uT", &s->field, &s->field_sigma);
+    if (code < 0)
+        code = parse_known("dip", o->dip, "rad", "64 +- 0.5 deg", &s->dip, &s->dip_sigma);
+    if (code < 0 && o->field && !(s->field > 0 && s->field < 1e-3))
+        code = command_misused("--field \"%s\": the field of the Earth is 22 to 67 uT", o->field);
+    if (code < 0 && o->dip && !(fabs(s->dip) <= 1.5707963267948966))
+        code = command_misused("--dip \"%s\": expected -90 deg to 90 deg", o->dip);
+    return code;
+}
+
 /* --with and --without as bits. */
 static int take_switches(const char *option_name, const char *list, unsigned *terms)
 {
@@ -253,6 +283,8 @@ int session_choose(session *b)
         code = check_closed_form(b);
     if (code < 0)
         code = take_counts(b);
+    if (code < 0)
+        code = take_field(b);
     if (code < 0 && command_unless_memory(imk_calibrate_log_create(
                         b->count, b->procedure, &b->settings, NULL, &b->found, &error)) != IMK_OK)
         code = refused(&error);

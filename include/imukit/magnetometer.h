@@ -116,13 +116,16 @@ typedef struct imk_magnetometer_record {
     double saturated[3];  /**< reading at which the axis stays for 20 updates or more, its largest or
                                smallest [T]; 0: none */
     double noise[3];      /**< 1 sigma of one update, from neighbours [T] */
+    double step[3];       /**< smallest difference of neighbours that differ [T] */
 } imk_magnetometer_record;
 /** Look at a record with a magnetometer. */
 IMK_API imk_magnetometer_record imk_magnetometer_look(const imk_test_record *record);
 
 /** Mean of a stretch at rest. Repeated rows and coarse steps are allowed for.
+ *  @param look  of the whole record
  *  @return false: fewer than two readings that are numbers */
-IMK_API bool imk_magnetometer_rest(const imk_test_record *record, size_t begin, size_t end,
+IMK_API bool imk_magnetometer_rest(const imk_test_record *record,
+                                   const imk_magnetometer_record *look, size_t begin, size_t end,
                                    imk_magnetometer_observation *observation);
 /** One noise for all means at rest, in the place of that of each: n of its samples count as one
  *  says for all. */

@@ -13,7 +13,9 @@
  *      tumble         known attitudes under gravity: dividing head
  *      centrifuge     known forces of several g
  *      spin           fast rotation: places of the accelerometers (size effect)
- *      thermal        bias, and scale factor, against temperature */
+ *      thermal        bias, and scale factor, against temperature
+ *      magnetometer   any rotation by hand: hard and soft iron of a magnetometer alone, by
+ *                     magnetometer.h; imk_procedure_observe() refuses it */
 #ifndef IMUKIT_PROCEDURE_H
 #define IMUKIT_PROCEDURE_H
 
@@ -31,6 +33,7 @@ typedef enum imk_procedure {
     IMK_PROCEDURE_CENTRIFUGE,
     IMK_PROCEDURE_SPIN,
     IMK_PROCEDURE_THERMAL,
+    IMK_PROCEDURE_MAGNETOMETER,
     IMK_PROCEDURES
 } imk_procedure;
 /** "multiposition", "rate-table" …; NULL beyond the last. */

@@ -140,9 +140,11 @@ static inline void mag_rests(mag_bench *b, const mag_bench_plan *plan)
         mag_rest(b, plan, k, &up[k]);
     b->record.count = (size_t)plan->rests * plan->rows;
     b->problem.count = (size_t)plan->rests;
+    const imk_magnetometer_record look = imk_magnetometer_look(&b->record);
     for (int k = 0; k < plan->rests; k++) {
         imk_magnetometer_observation *o = &b->observation[k];
-        imk_magnetometer_rest(&b->record, (size_t)k * plan->rows, (size_t)(k + 1) * plan->rows, o);
+        imk_magnetometer_rest(&b->record, &look, (size_t)k * plan->rows,
+                              (size_t)(k + 1) * plan->rows, o);
         memcpy(o->up, up[k].up, sizeof o->up);
         o->up_sigma = up[k].up_sigma;
     }

@@ -2,12 +2,11 @@
 /* Readings of a magnetometer from a record: means at rest, and short means in motion. A sensor that
  * is slower than the log repeats its rows: only a row that differs from the one before is an update.
  * At rest the repetition shows in the autocorrelation, and a coarse step in the step
- * (static_summary.c). */
+ * (static_summary.c), which is looked for in the whole record. */
 #include "magnetometer_internal.h"
 
-#include "imukit/static_detection.h"
-
 #include "base/algebra/vector_internal.h"
+#include "calibrate/standstill/static_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,16 +26,18 @@ static bool same(const double a[3], const double b[3])
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-bool imk_magnetometer_rest(const imk_test_record *record, size_t begin, size_t end,
-                           imk_magnetometer_observation *o)
+bool imk_magnetometer_rest(const imk_test_record *record, const imk_magnetometer_record *look,
+                           size_t begin, size_t end, imk_magnetometer_observation *o)
 {
+    double step[2][IMK_AXES_MAX] = {{0.0}};
     imk_test_record as_forces = {.count = record->count,
                                  .dt = record->dt,
                                  .time = record->time,
                                  .axis_count = {0, 3}};
     for (int i = 0; i < 3; i++)
         as_forces.reading[IMK_ACCEL][i] = record->mag[i];
-    const imk_static_interval at = imk_static_summary(&as_forces, begin, end);
+    memcpy(step[IMK_ACCEL], look->step, sizeof look->step);
+    const imk_static_interval at = imki_static_summarise(&as_forces, begin, end, step);
     memset(o, 0, sizeof *o);
     o->begin = begin;
     o->end = end;
@@ -142,6 +143,7 @@ imk_magnetometer_record imk_magnetometer_look(const imk_test_record *record)
         const double mean = count > 0.0 ? sum[i] / count / root : 0.0;
         const bool lively = changed[i] > 0.5 * (double)found.updates;
         found.noise[i] = mean * mean / sqrt(6.0);
+        found.step[i] = imki_static_step(record->mag[i], 0, record->count);
         found.stuck[i] = found.updates > 0 && e.low[i] == e.high[i];
         if (lively && e.high_most[i] >= RUN)
             found.saturated[i] = e.high[i];

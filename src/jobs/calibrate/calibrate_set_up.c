@@ -26,6 +26,10 @@ imk_calibrate_log_settings imk_calibrate_log_default(void)
     const double none = (double)NAN;
     return (imk_calibrate_log_settings){.cookie = settings_cookie,
                                         .gravity = none,
+                                        .field = none,
+                                        .field_sigma = none,
+                                        .dip = none,
+                                        .dip_sigma = none,
                                         .frame = -1,
                                         .placement = none,
                                         .g_sensitivity_sigma = none,

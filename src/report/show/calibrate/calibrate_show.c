@@ -230,6 +230,7 @@ static void show_data(const imk_calibrate_log *b, const imk_verdict *v, const ch
     show_observations(b, result);
     show_runs(b, result);
     show_closed_form(b, result);
+    imki_magnetometer_data(b, result);
     imk_result_end(result);
 }
 
@@ -312,6 +313,7 @@ void imk_show_calibrate_log(const imk_calibrate_log *b, const imk_verdict *v, bo
             imki_runs_table(b, sensor, result);
         else
             imki_parameter_table(b, sensor, result);
+    imki_parameter_table(b, IMK_MAG, result);
     imk_result_for(result, IMK_FOR_PAGE);
     if (b->result)
         imk_result_line(result,

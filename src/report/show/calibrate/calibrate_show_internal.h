@@ -45,6 +45,10 @@ void imki_thermal_table(const imk_calibrate_record *log, int sensor, bool brief,
                         imk_result *result);
 void imki_fit_table(const imk_calibrate_log *b, imk_result *result);
 void imki_pose_table(const imk_calibrate_log *b, imk_result *result);
+/* magnetometer_show.c: its solution as data, in words, and as a row of the fit. */
+void imki_magnetometer_data(const imk_calibrate_log *b, imk_result *result);
+void imki_magnetometer_remarks(const imk_calibrate_log *b, imk_result *result);
+void imki_magnetometer_row(const imk_calibrate_log *b, imk_table *table);
 /* calibrate_figure.c */
 void imki_calibrate_figure(const imk_calibrate_log *b, imk_result *result);
 

@@ -145,6 +145,7 @@ void imki_fit_table(const imk_calibrate_log *b, imk_result *result)
             imk_table_add(table, "-");
         imk_table_add(table, "%.3g\t%.4g %s", fit->factor, fit->rms / unit.scale, unit.text);
     }
+    imki_magnetometer_row(b, table);
     imk_result_gap(result);
 }
 
