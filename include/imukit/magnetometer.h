@@ -9,7 +9,7 @@
  *  field u of the Earth in body axes, its modulus F, and f, the direction of the specific force at
  *  rest: away from the centre of the Earth. |u| = F determines h and A up to a rotation; the dip,
  *  which is the same in all attitudes, determines the rotation. Without the true F, the scale of A
- *  is a convention: the mean of its three scale factors is 1. All attitudes are unknown.
+ *  is a convention: its determinant is 1. All attitudes are unknown.
  *
  *  The fit is by maximum likelihood, without the bias of algebraic fits. Attitudes that do not fit
  *  the others are refused, and sigmas are multiplied by the factor that the residuals show. Method:

@@ -52,22 +52,23 @@ static inline double mag_normal(mag_bench *b)
 /* Hard iron some ten uT, soft iron some per cent, alignment some degrees. */
 static inline void mag_truth(mag_bench *b, const mag_bench_plan *plan)
 {
-    double sum = 0.0;
     for (int i = 0; i < 3; i++)
         b->truth[i] = 20e-6 * mag_normal(b);
     for (int i = 0; i < 9; i++)
         b->truth[3 + i] = (i % 4 == 0) + 0.04 * mag_normal(b);
     for (int i = 0; plan->no_up && i < 9; i++) /* symmetric */
         b->truth[3 + 3 * (i % 3) + i / 3] = b->truth[3 + i];
-    for (int i = 0; i < 3; i++)
-        sum += b->truth[3 + 4 * i] / 3.0;
+    const double *a = b->truth + 3;
+    const double volume = a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) +
+                          a[2] * (a[3] * a[7] - a[4] * a[6]);
+    const double scale = cbrt(volume);
     b->truth[IMK_MAGNETOMETER_FIELD] = plan->field;
     b->truth[IMK_MAGNETOMETER_DIP] = sin(plan->dip);
     if (plan->field_sigma >= 0.0)
         return;
     for (int i = 0; i < 9; i++) /* what the convention makes of it */
-        b->truth[3 + i] /= sum;
-    b->truth[IMK_MAGNETOMETER_FIELD] *= sum;
+        b->truth[3 + i] /= scale;
+    b->truth[IMK_MAGNETOMETER_FIELD] *= scale;
 }
 
 /* A rotation, any, or about a level one. */

@@ -352,10 +352,7 @@ static imk_status not_determined(imki_mag_fit *fit, imk_magnetometer_result *res
 static imk_status solve(imki_mag_fit *fit, imk_magnetometer_result *made, double *scratch,
                         imk_error *error)
 {
-    double angle;
     imki_mag_start(fit);
-    const int nearest = imki_mag_nearest(fit->x + IMKI_MAG_RESPONSE, &angle);
-    imki_mag_map(fit, nearest);
     size_t equations = 0;
     for (size_t k = 0; k < fit->problem->count; k++)
         equations += (size_t)equations_of(fit, &fit->problem->observation[k]);

@@ -17,11 +17,89 @@
 #include <math.h>
 #include <string.h>
 
+/* ---- independent parameters ------------------------------------------------------------------ */
+
+static void add_free(imki_mag_fit *fit, int parameter)
+{
+    fit->map[parameter][fit->free++] = 1.0;
+}
+
+/* Elements of A that the frame leaves, where there is no `up`. */
+static void map_frame(imki_mag_fit *fit)
+{
+    const imk_triad_frame frame = fit->problem->frame;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            const bool upper = frame == IMK_FRAME_UPPER, lower = frame == IMK_FRAME_LOWER;
+            if (i == j || (upper && j > i) || (lower && j < i))
+                add_free(fit, IMKI_MAG_RESPONSE + 3 * i + j);
+            else if (!upper && !lower && j > i) {
+                fit->map[IMKI_MAG_RESPONSE + 3 * j + i][fit->free] = 1.0;
+                add_free(fit, IMKI_MAG_RESPONSE + 3 * i + j);
+            }
+        }
+}
+
+/* det A = 1 sets the scale: d log(det A) = sum of A^-T dA is 0. The independent parameter that it
+ * depends on most follows the others. */
+static void tie_scale(imki_mag_fit *fit)
+{
+    double slope[IMKI_MAG_ALL] = {0.0};
+    size_t most = 0;
+    for (size_t k = 0; k < fit->free; k++) {
+        slope[k] = 0.0;
+        for (int i = 0; i < 9; i++)
+            slope[k] += fit->inverse.m[i % 3][i / 3] * fit->map[IMKI_MAG_RESPONSE + i][k];
+        most = fabs(slope[k]) > fabs(slope[most]) ? k : most;
+    }
+    for (int p = 0; p < IMKI_MAG_ALL; p++) {
+        const double tied = fit->map[p][most] / slope[most];
+        for (size_t k = 0; k < fit->free; k++)
+            fit->map[p][k] -= tied * slope[k];
+        for (size_t k = most; k < fit->free; k++)
+            fit->map[p][k] = k + 1 < fit->free ? fit->map[p][k + 1] : 0.0;
+    }
+    fit->free--;
+}
+
+static void map_parameters(imki_mag_fit *fit)
+{
+    const imk_magnetometer *problem = fit->problem;
+    memset(fit->map, 0, sizeof fit->map);
+    fit->free = 0;
+    for (int i = 0; i < 3; i++)
+        add_free(fit, IMKI_MAG_BIAS + i);
+    if (fit->aligned)
+        for (int i = 0; i < 9; i++)
+            add_free(fit, IMKI_MAG_RESPONSE + i);
+    else
+        map_frame(fit);
+    if (!fit->field_known)
+        tie_scale(fit);
+    if (!fit->field_known || problem->field_sigma > 0.0)
+        add_free(fit, IMKI_MAG_FIELD);
+    if (fit->aligned && !(problem->dip_sigma == 0.0))
+        add_free(fit, IMKI_MAG_DIP);
+}
+
+/* ---- equations ------------------------------------------------------------------------------- */
+
 bool imki_mag_set_response(imki_mag_fit *fit)
 {
     imk_matrix3 a;
+    double cross[3];
     memcpy(a.m, fit->x + IMKI_MAG_RESPONSE, sizeof a.m);
-    return imk_matrix3_inverse(a, &fit->inverse) == IMK_OK;
+    imki_cross3(a.m[1], a.m[2], cross);
+    const double scale =
+        fit->field_known ? 1.0 : cbrt(fabs(imki_dot3(a.m[0], cross)));
+    for (int i = 0; i < 9; i++)
+        a.m[i / 3][i % 3] /= scale;
+    if (imk_matrix3_inverse(a, &fit->inverse) != IMK_OK)
+        return false;
+    memcpy(fit->x + IMKI_MAG_RESPONSE, a.m, sizeof a.m);
+    fit->x[IMKI_MAG_FIELD] *= scale;
+    map_parameters(fit);
+    return true;
 }
 
 /* A^-1 (m - h) */
@@ -117,70 +195,6 @@ void imki_mag_equate(const imki_mag_fit *fit, const imk_magnetometer_observation
     }
 }
 
-/* ---- independent parameters ------------------------------------------------------------------ */
-
-static void add_free(imki_mag_fit *fit, int parameter)
-{
-    fit->map[parameter][fit->free++] = 1.0;
-}
-
-/* Elements of A that the frame leaves, where there is no `up`. */
-static void map_frame(imki_mag_fit *fit)
-{
-    const imk_triad_frame frame = fit->problem->frame;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            const bool upper = frame == IMK_FRAME_UPPER, lower = frame == IMK_FRAME_LOWER;
-            if (i == j || (upper && j > i) || (lower && j < i))
-                add_free(fit, IMKI_MAG_RESPONSE + 3 * i + j);
-            else if (!upper && !lower && j > i) {
-                fit->map[IMKI_MAG_RESPONSE + 3 * j + i][fit->free] = 1.0;
-                add_free(fit, IMKI_MAG_RESPONSE + 3 * i + j);
-            }
-        }
-}
-
-/* The scale of A is given by the sum of the three elements that are near to 1 or -1: the last of
- * them follows the others. */
-static void tie_scale(imki_mag_fit *fit, int nearest)
-{
-    const imk_signed_axes axes = imk_signed_axes_of(nearest);
-    const int last = IMKI_MAG_RESPONSE + 6 + axes.column[2];
-    size_t column = 0;
-    while (fit->map[last][column] == 0.0)
-        column++;
-    for (int p = 0; p < IMKI_MAG_ALL; p++)
-        for (size_t k = column; k < fit->free; k++)
-            fit->map[p][k] = k + 1 < fit->free ? fit->map[p][k + 1] : 0.0;
-    fit->free--;
-    for (int i = 0; i < 2; i++) {
-        const int other = IMKI_MAG_RESPONSE + 3 * i + axes.column[i];
-        for (size_t k = 0; k < fit->free; k++)
-            if (fit->map[other][k] != 0.0)
-                fit->map[last][k] -= axes.sign[2] * axes.sign[i] * fit->map[other][k];
-    }
-}
-
-void imki_mag_map(imki_mag_fit *fit, int nearest)
-{
-    const imk_magnetometer *problem = fit->problem;
-    memset(fit->map, 0, sizeof fit->map);
-    fit->free = 0;
-    for (int i = 0; i < 3; i++)
-        add_free(fit, IMKI_MAG_BIAS + i);
-    if (fit->aligned)
-        for (int i = 0; i < 9; i++)
-            add_free(fit, IMKI_MAG_RESPONSE + i);
-    else
-        map_frame(fit);
-    if (!fit->field_known)
-        tie_scale(fit, nearest);
-    if (!fit->field_known || problem->field_sigma > 0.0)
-        add_free(fit, IMKI_MAG_FIELD);
-    if (fit->aligned && !(problem->dip_sigma == 0.0))
-        add_free(fit, IMKI_MAG_DIP);
-}
-
 /* ---- sums ------------------------------------------------------------------------------------ */
 
 static void add_equations(imki_mag_fit *fit, double weight, const imki_mag_equations *e)
@@ -267,9 +281,9 @@ static bool factorise(const imki_mag_fit *fit, double *factor, double *scale)
 
 bool imki_mag_invert(imki_mag_fit *fit)
 {
-    const size_t n = fit->free;
     double factor[IMKI_MAG_ALL * IMKI_MAG_ALL], inverse[IMKI_MAG_ALL * IMKI_MAG_ALL];
     double scale[IMKI_MAG_ALL], half[IMKI_MAG_ALL][IMKI_MAG_ALL];
+    const size_t n = fit->free;
     if (!factorise(fit, factor, scale))
         return false;
     imk_cholesky_inverse(n, factor, inverse);

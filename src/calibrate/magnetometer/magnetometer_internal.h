@@ -39,7 +39,10 @@ static inline bool imki_mag_has_up(const imk_magnetometer_observation *o)
 /* magnetometer_start.c: hard iron, A and field by algebra, good enough to iterate from. */
 void imki_mag_start(imki_mag_fit *fit);
 
-/* magnetometer_equations.c: the equations of one observation. */
+/* magnetometer_equations.c: the inverse of A, after the convention of its scale, and which parameters
+ * are independent; false: A is singular. */
+bool imki_mag_set_response(imki_mag_fit *fit);
+/* The equations of one observation. */
 typedef struct imki_mag_equations {
     int count;
     double residual[2], information[2][2]; /* inverse of their covariance */
@@ -47,11 +50,8 @@ typedef struct imki_mag_equations {
     double up_gradient[3]; /* of the second residual by `up` */
     double adjusted[3];    /* the reading nearest to the observed one that fits */
 } imki_mag_equations;
-bool imki_mag_set_response(imki_mag_fit *fit);
 void imki_mag_equate(const imki_mag_fit *fit, const imk_magnetometer_observation *o,
                      imki_mag_equations *e);
-/* Which parameters are independent, for the signed permutation that A is near to. */
-void imki_mag_map(imki_mag_fit *fit, int nearest);
 /* Sum the weighted equations of all observations, whose adjusted readings are renewed. */
 void imki_mag_sum(imki_mag_fit *fit);
 /* Covariance of x from the sums, with knowledge from before. false: it is singular. */

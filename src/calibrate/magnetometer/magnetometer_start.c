@@ -204,19 +204,6 @@ static void turn(imki_mag_fit *fit, const double r[3][3])
     memcpy(fit->x + IMKI_MAG_RESPONSE, a.m, sizeof a.m);
 }
 
-/* The scale of A: the sum of the three elements along its nearest permutation is 3. */
-static void set_scale(imki_mag_fit *fit)
-{
-    double angle, sum = 0.0, *a = fit->x + IMKI_MAG_RESPONSE;
-    const imk_signed_axes axes = imk_signed_axes_of(imki_mag_nearest(a, &angle));
-    for (int i = 0; i < 3; i++)
-        sum += axes.sign[i] * a[3 * i + axes.column[i]] / 3.0;
-    const double scale = fit->field_known ? fit->problem->field / fit->x[IMKI_MAG_FIELD] : sum;
-    for (int i = 0; i < 9; i++)
-        a[i] /= scale;
-    fit->x[IMKI_MAG_FIELD] *= scale;
-}
-
 void imki_mag_start(imki_mag_fit *fit)
 {
     const imk_magnetometer *problem = fit->problem;
@@ -249,6 +236,9 @@ void imki_mag_start(imki_mag_fit *fit)
         memcpy(c.m, r, sizeof c.m);
         turn(fit, (const double(*)[3])imk_matrix3_transpose(c).m);
     }
-    set_scale(fit);
+    for (int i = 0; fit->field_known && i < 9; i++)
+        fit->x[IMKI_MAG_RESPONSE + i] *= fit->x[IMKI_MAG_FIELD] / problem->field;
+    if (fit->field_known)
+        fit->x[IMKI_MAG_FIELD] = problem->field;
     (void)imki_mag_set_response(fit);
 }

@@ -193,7 +193,7 @@ static void describe(const imk_calibrate_log *b, imk_evidence *evidence)
 static void describe_magnetometer(const imk_calibrate_log *b, imk_evidence *evidence)
 {
     const imk_magnetometer_result *r = b->mag;
-    char field[80] = "the mean of the scale factors is 1 by convention";
+    char field[80] = "determinant 1 by convention";
     if (r->field_known)
         snprintf(field, sizeof field, "field %.5g uT", 1e6 * r->value[IMK_MAGNETOMETER_FIELD]);
     snprintf(evidence->method, sizeof evidence->method,

@@ -140,6 +140,15 @@ static void describe_mending(const imk_signed_axes *axes, char *text, size_t siz
         snprintf(text, size, "mag x, y, z taken from %s, %s, %s", from[0], from[1], from[2]);
 }
 
+/* Axes that moved, and those with the other sign. */
+static int mistakes_of(const imk_signed_axes *axes)
+{
+    int mistakes = 0;
+    for (int i = 0; i < 3; i++)
+        mistakes += (axes->column[i] != i) + (axes->sign[i] < 0);
+    return mistakes;
+}
+
 static imk_signed_axes inverted(imk_signed_axes axes)
 {
     for (int i = 0; i < 3; i++)
@@ -173,8 +182,10 @@ static bool check_order(imk_calibrate_log *b, const imk_magnetometer_result *r, 
     if (!r->aligned || (r->nearest == 0 && !opposite))
         return true;
     const imk_signed_axes axes = imk_signed_axes_of(r->nearest), turned = inverted(axes);
-    describe_mending(opposite ? &turned : &axes, one, sizeof one);
-    describe_mending(opposite ? &axes : &turned, other, sizeof other);
+    const bool second =
+        known != 0 ? opposite : mistakes_of(&turned) < mistakes_of(&axes); /* comes first */
+    describe_mending(second ? &turned : &axes, one, sizeof one);
+    describe_mending(second ? &axes : &turned, other, sizeof other);
     if (r->nearest == 0) {
         (void)imki_magnetometer_useless(b, IMK_ERROR_CONFLICT, "mag_inverted", NULL,
                                         IMKI_NUMBERS(fabs(dip), dip > 0), error);
@@ -188,7 +199,7 @@ static bool check_order(imk_calibrate_log *b, const imk_magnetometer_result *r, 
     snprintf(words, sizeof words, "%.46s\t%.46s", one, other);
     (void)imki_magnetometer_useless(
         b, IMK_ERROR_CONFLICT, known != 0 ? "mag_axes_known" : "mag_axes", words,
-        IMKI_NUMBERS(fabs(dip), opposite ? dip < 0 : dip > 0, known > 0), error);
+        IMKI_NUMBERS(fabs(dip), second ? dip < 0 : dip > 0), error);
     return false;
 }
 

@@ -92,9 +92,9 @@ void imki_magnetometer_remarks(const imk_calibrate_log *b, imk_result *result)
         imk_result_line(result, "Magnetometer: its scale is that of the field given, %s uT.", field);
     else
         imk_result_line(result,
-                        "Magnetometer: the mean of its three scale factor errors is 0 by "
-                        "convention, because the field is not known; only their differences and "
-                        "the ratios of the matrix are. Then the field is %s uT.",
+                        "Magnetometer: the field is not known (--field), so its scale is a "
+                        "convention, by which the determinant of its matrix is 1; the field is "
+                        "then %s uT.",
                         field);
     if (!r->aligned) {
         imk_result_line(result,
@@ -105,8 +105,8 @@ void imki_magnetometer_remarks(const imk_calibrate_log *b, imk_result *result)
     }
     imk_readable_value(dip_of(r) / degree, dip_sigma_of(r) / degree, 5, dip, sizeof dip);
     imk_result_line(result,
-                    "It is aligned to the axes of the accelerometers: the dip of the field is the "
-                    "same in all attitudes, %s deg. Hard iron is its bias; soft iron, scale and "
-                    "alignment are one matrix.",
-                    dip);
+                    "It is aligned to the axes of the accelerometers, against which it is turned by "
+                    "%.3g deg: the dip of the field is the same in all attitudes, %s deg. Hard iron "
+                    "is its bias; soft iron, scale and alignment are one matrix.",
+                    r->nearest_angle / degree, dip);
 }
