@@ -420,7 +420,10 @@ static const struct message {
                  "of attitude looks like a change of accelerometer bias; keep the attitude fixed, "
                  "or state how accurately the unit is put back with --placement 0.1deg"},
     {"temperature_left_out", "{name}: the other effects of temperature are left out: {0t}"},
-    /* compensate_columns.c */
+    /* compensate_magnetometer.c, compensate_columns.c */
+    {"magnetometer_left",
+     "the magnetometer is copied as it is: it takes columns mag_x, mag_y and mag_z with a unit, and "
+     "a model of three axes without a sensitivity"},
     {"no_counts", "{record}: {name}, but {model} describes readings in counts ({0k}.sensitivity)"},
     {"counts", "{record}: {name} is in counts, but {model} does not say what a count is: add "
                "{0k}.sensitivity to it"},
