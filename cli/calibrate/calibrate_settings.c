@@ -64,9 +64,10 @@ static int take_field(session *b)
 {
     const calibrate_options *o = b->options;
     imk_calibrate_log_settings *s = &b->settings;
+    double sigma;
     int code = parse_known("field", o->field, "T", "48.1 +- 0.2 uT", &s->field, &s->field_sigma);
     if (code < 0)
-        code = parse_known("dip", o->dip, "rad", "64 +- 0.5 deg", &s->dip, &s->dip_sigma);
+        code = parse_known("dip", o->dip, "rad", "64 deg", &s->dip, &sigma);
     if (code < 0 && o->field && !(s->field > 0 && s->field < 1e-3))
         code = command_misused("--field \"%s\": the field of the Earth is 22 to 67 uT", o->field);
     if (code < 0 && o->dip && !(fabs(s->dip) <= 1.5707963267948966))
@@ -206,11 +207,13 @@ static int assign_procedures(session *b)
 static int check_used(const session *b)
 {
     const calibrate_options *o = b->options;
-    bool referenced = false, ferraris = false, thermal = false;
+    bool referenced = false, ferraris = false, thermal = false, magnetic = false;
     for (size_t k = 0; k < b->count && !b->settings.repeatability; k++) {
         const imk_procedure p = b->procedure[k];
         ferraris = ferraris || p == IMK_PROCEDURE_FERRARIS;
         thermal = thermal || p == IMK_PROCEDURE_THERMAL;
+        magnetic = magnetic || p == IMK_PROCEDURE_MAGNETOMETER ||
+                   p == IMK_PROCEDURE_MULTIPOSITION;
         referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
                      p == IMK_PROCEDURE_CENTRIFUGE || p == IMK_PROCEDURE_SPIN;
     }
@@ -220,6 +223,9 @@ static int check_used(const session *b)
                                "rate-table, tumble, centrifuge, spin and thermal");
     if (o->motion_offset && !o->motion)
         return command_misused("--motion-offset is used with --motion only: add --motion");
+    if ((o->field || o->dip) && !magnetic)
+        return command_misused(none, o->field ? "field" : "dip", o->procedure,
+                               "multiposition and magnetometer");
     if (o->settings.table_axis >= 0 && !referenced)
         return command_misused(none, "table-axis", o->procedure, "rate-table");
     if (!isnan(o->settings.turn_angle) && !ferraris)

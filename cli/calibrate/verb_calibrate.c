@@ -50,8 +50,8 @@ static const option test_options[] = {
      .help = "strength of the Earth's magnetic field at the place, with 1 sigma, such as \"48.1 +- "
              "0.2 uT\"; sets the scale of the magnetometer"},
     {"dip", OPTION_TEXT, AT(dip), .value = "ANGLE",
-     .help = "dip of this field below the horizontal, negative if it points up, such as \"64 +- 0.5 "
-             "deg\""},
+     .help = "dip of this field below the horizontal, negative if it points up, such as \"64 deg\"; "
+             "tells signs of the magnetometer's axes apart, as --position does"},
     {"no-earth", OPTION_FLAG, AT(settings.no_earth),
      .help = "the references do not contain the Earth's rotation; the gyro bias then includes it"},
     {"frame", OPTION_CHOICE, AT(settings.frame), .value = "FRAME",

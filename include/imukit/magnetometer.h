@@ -56,7 +56,6 @@ typedef struct imk_magnetometer {
     imk_triad_frame frame; /**< convention that fixes the rotation of A if no observation has `up`;
                                 default symmetric; IMK_FRAME_REFERENCE is taken as symmetric */
     double field, field_sigma; /**< F with its 1 sigma [T]; default NaN: not known */
-    double dip, dip_sigma;     /**< positive downwards [rad]; default NaN: not known */
     bool robust;               /**< refuse outliers; default true */
     bool series; /**< the observations follow each other in time, so that neighbours may have the
                       same error; default false */
@@ -103,7 +102,7 @@ typedef struct imk_magnetometer_result {
  *  @return IMK_ERROR_TOO_SHORT (value: equations, limit: how many are needed), IMK_ERROR_SINGULAR
  *          (the attitudes do not determine the parameters), IMK_ERROR_NO_CONVERGENCE; with these
  *          two spread, normal and advice are filled, and nothing else; IMK_ERROR_RANGE (field:
- *          "field", "dip", "sigma", "reading"), IMK_ERROR_UNINITIALISED, IMK_ERROR_ARGUMENT */
+ *          "field", "sigma", "reading"), IMK_ERROR_UNINITIALISED, IMK_ERROR_ARGUMENT */
 IMK_API imk_status imk_magnetometer_solve(const imk_magnetometer *problem,
                                           imk_magnetometer_result *result, double *scratch,
                                           imk_error *error);

@@ -279,8 +279,8 @@ static const struct message {
     {"longer_than_record", "--{name} {0.6g}s is longer than {record}, which has {1.4g} s"},
     {"sections", "{record} has {0} text columns; name the one that divides it into sections, such "
                  "as --section {name}"},
-    {"mag_counts", "the magnetometer columns of {record} are in counts: state their unit in the "
-                   "header, such as mag_x [uT]"},
+    {"mag_counts", "the magnetometer columns of {record} have no unit, or are in counts: state it "
+                   "in the header, such as mag_x [uT]"},
     {"no_magnetometer", "{record} has {0} of the columns mag_x, mag_y, mag_z, and --procedure "
                         "magnetometer needs all three; name them with --columns"},
     {"magnetometer_only", "{record} has a magnetometer, but no gyro and no accelerometer; use "
@@ -306,9 +306,9 @@ static const struct message {
                      "add attitudes with the field of the Earth along {name} of the unit. It points "
                      "north, and steeply down in the north of the Earth, up in the south"},
     {"mag_weak", "hard or soft iron of the magnetometer is known to {0.2g} % of the field only (1 "
-                 "sigma), because the directions of the field are too much alike (spread {1.2g}, "
-                 "0.33 at best); add attitudes with the field of the Earth along {name} of the "
-                 "unit. It points north, and steeply down in the north of the Earth, up in the "
+                 "sigma); the directions of the field have a spread of {1.2g}, 0.33 at best. Add "
+                 "attitudes with the field of the Earth along {name} of the unit, and stay longer "
+                 "in each. It points north, and steeply down in the north of the Earth, up in the "
                  "south"},
     {"mag_axes", "the axes of the magnetometer are not those of the accelerometers, so it is not "
                  "calibrated. Either {name}, in a field that points {0.0f} deg {1?}down{1!}up{?}; "
@@ -335,6 +335,8 @@ static const struct message {
                   "the unit of the columns is wrong, or a magnet or steel is near"},
     {"mag_field_unit", "the field is {0.4g} uT by the magnetometer, but that of the Earth is 22 to "
                        "67 uT: the columns look like {name}; correct the header"},
+    {"mag_dip", "the dip of the field is {0.4g} deg by the log and {1.4g} deg by --dip: steel is near, "
+                "or one of the two is wrong"},
     {"mag_disturbed", "the field is not the same in all attitudes: it differs by {0.3g} uT rms "
                       "({2.2g} % of it), {1.3g} times what the noise explains. Steel, a motor or a "
                       "current is near, or turns with the unit only in part; turn the unit about "

@@ -23,8 +23,6 @@ imk_magnetometer imk_magnetometer_default(void)
                               .frame = IMK_FRAME_SYMMETRIC,
                               .field = none,
                               .field_sigma = none,
-                              .dip = none,
-                              .dip_sigma = none,
                               .robust = true};
 }
 
@@ -32,18 +30,12 @@ imk_magnetometer imk_magnetometer_default(void)
 
 static imk_status check_known(const imk_magnetometer *p, imk_error *error)
 {
-    const bool field = !isnan(p->field), dip = !isnan(p->dip);
+    const bool field = !isnan(p->field);
     if (field && !(p->field > 0.0 && p->field < 1.0))
         return imki_refuse(error, IMK_ERROR_RANGE, "field", p->field, 1.0, "above 0 T, below 1 T");
     if (field && !(p->field_sigma >= 0.0 && p->field_sigma < p->field))
         return imki_refuse(error, IMK_ERROR_RANGE, "field", p->field_sigma, p->field,
                            "a sigma of 0 or more, below the field");
-    if (dip && !(fabs(p->dip) <= 1.5707963267948966))
-        return imki_refuse(error, IMK_ERROR_RANGE, "dip", p->dip, 1.5707963267948966,
-                           "-90 to 90 deg");
-    if (dip && !(p->dip_sigma >= 0.0 && p->dip_sigma < 1.0))
-        return imki_refuse(error, IMK_ERROR_RANGE, "dip", p->dip_sigma, 1.0,
-                           "a sigma of 0 or more, below 1 rad");
     return IMK_OK;
 }
 
@@ -365,8 +357,6 @@ static imk_status solve(imki_mag_fit *fit, imk_magnetometer_result *made, double
     const size_t used = assess(fit);
     made->degrees_of_freedom = (double)used - (double)fit->free;
     if (fit->field_known && fit->problem->field_sigma > 0.0)
-        made->degrees_of_freedom += 1.0;
-    if (fit->aligned && fit->problem->dip_sigma > 0.0)
         made->degrees_of_freedom += 1.0;
     if (!find_factor(fit, made->degrees_of_freedom, &made->chi_square, &made->iterations))
         return not_determined(fit, made, error);

@@ -78,7 +78,7 @@ static void map_parameters(imki_mag_fit *fit)
         tie_scale(fit);
     if (!fit->field_known || problem->field_sigma > 0.0)
         add_free(fit, IMKI_MAG_FIELD);
-    if (fit->aligned && !(problem->dip_sigma == 0.0))
+    if (fit->aligned)
         add_free(fit, IMKI_MAG_DIP);
 }
 
@@ -217,7 +217,7 @@ static void add_equations(imki_mag_fit *fit, double weight, const imki_mag_equat
     }
 }
 
-/* What is known before of field and dip. */
+/* What is known before of the field. */
 static void add_known(imki_mag_fit *fit)
 {
     const imk_magnetometer *problem = fit->problem;
@@ -225,12 +225,6 @@ static void add_known(imki_mag_fit *fit)
         const double weight = 1.0 / (problem->field_sigma * problem->field_sigma);
         fit->normal[IMKI_MAG_FIELD * (IMKI_MAG_ALL + 1)] += weight;
         fit->gradient[IMKI_MAG_FIELD] += weight * (fit->x[IMKI_MAG_FIELD] - problem->field);
-    }
-    if (fit->aligned && problem->dip_sigma > 0.0) {
-        const double sigma = fmax(cos(problem->dip), problem->dip_sigma) * problem->dip_sigma;
-        fit->normal[IMKI_MAG_DIP * (IMKI_MAG_ALL + 1)] += 1.0 / (sigma * sigma);
-        fit->gradient[IMKI_MAG_DIP] +=
-            (fit->x[IMKI_MAG_DIP] - sin(problem->dip)) / (sigma * sigma);
     }
 }
 

@@ -195,13 +195,12 @@ static double extent_of(const imk_test_record *record)
     return most;
 }
 
-/* Blocks of a record; of them every one that `keep` of them allow is written.
- * @return their number in all */
-static size_t fill(const imk_test_record *record, double limit, size_t stride, size_t capacity,
-                   imk_magnetometer_observation *observation)
+/* Blocks of a record; every `stride`-th is written, as far as there is room.
+ * @return their number: written, or in all if the capacity is 0 */
+static size_t fill(const imk_test_record *record, const imk_magnetometer_record *look, double limit,
+                   size_t stride, size_t capacity, imk_magnetometer_observation *observation)
 {
     static const double longest = 1.0; /* [s] */
-    const imk_magnetometer_record look = imk_magnetometer_look(record);
     updates u = {.record = record};
     block b = {.count = 0};
     double m[3] = {0.0, 0.0, 0.0};
@@ -217,12 +216,12 @@ static size_t fill(const imk_test_record *record, double limit, size_t stride, s
             continue;
         }
         if (b.count > 0 && count++ % stride == 0 && written < capacity)
-            finish(&b, &look, &observation[written++]);
+            finish(&b, look, &observation[written++]);
         b = (block){.count = 1, .begin = row, .end = row + 1};
         memcpy(b.sum, m, sizeof b.sum);
         memcpy(b.first, m, sizeof b.first);
     }
-    return stride == 1 && capacity == 0 ? count : written;
+    return capacity == 0 ? count : written;
 }
 
 size_t imk_magnetometer_motion(const imk_test_record *record, size_t capacity,
@@ -231,7 +230,12 @@ size_t imk_magnetometer_motion(const imk_test_record *record, size_t capacity,
     static const double turned = 0.02; /* [rad]; a mean is then too short by 2e-5 at most */
     if (capacity == 0)
         return 0;
-    const double limit = turned * extent_of(record);
-    const size_t count = fill(record, limit, 1, 0, NULL);
-    return fill(record, limit, (count + capacity - 1) / capacity, capacity, observation);
+    const imk_magnetometer_record look = imk_magnetometer_look(record);
+    double limit = turned * extent_of(record);
+    /* Noise that ends blocks would choose which readings they hold. */
+    for (int i = 0; i < 3; i++)
+        if (6.0 * look.noise[i] > limit)
+            limit = 0.0;
+    const size_t count = fill(record, &look, limit, 1, 0, NULL);
+    return fill(record, &look, limit, (count + capacity - 1) / capacity, capacity, observation);
 }

@@ -80,8 +80,6 @@ static void observe(const imk_calibrate_log *b, imk_magnetometer *problem)
     problem->frame = s->frame >= 0 ? (imk_triad_frame)s->frame : IMK_FRAME_SYMMETRIC;
     problem->field = s->field;
     problem->field_sigma = isnan(s->field_sigma) ? 0 : s->field_sigma;
-    problem->dip = s->dip;
-    problem->dip_sigma = isnan(s->dip) ? (double)NAN : isnan(s->dip_sigma) ? 0 : s->dip_sigma;
     problem->robust = !s->least_squares;
     problem->accel = b->result;
     for (size_t k = 0; k < b->count; k++)

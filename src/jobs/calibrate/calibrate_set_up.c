@@ -29,7 +29,6 @@ imk_calibrate_log_settings imk_calibrate_log_default(void)
                                         .field = none,
                                         .field_sigma = none,
                                         .dip = none,
-                                        .dip_sigma = none,
                                         .frame = -1,
                                         .placement = none,
                                         .g_sensitivity_sigma = none,

@@ -19,8 +19,8 @@ static const double field_least = 22e-6, field_most = 67e-6, scale_off = 0.2;
 static const double disturbed = 0.005;
 
 /* 1 sigma of the response, and of the hard iron over the field, from which on attitudes are too much
- * alike: a degree of heading; and the same that is of no use. */
-static const double weak = 0.02, useless = 0.1;
+ * alike: half a degree of heading; and the same that is of no use. */
+static const double weak = 0.01, useless = 0.1;
 
 /* Axes within this of others' places are those [rad]; a mounting stands somewhere between. */
 static const double exchanged = 0.35;
@@ -237,6 +237,16 @@ static void check_field(imk_calibrate_log *b, const imk_magnetometer_result *r)
                   IMKI_NUMBERS(1e6 * field));
 }
 
+/* The dip that is given is not used in the fit: it is another witness. */
+static void check_dip(imk_calibrate_log *b, const imk_magnetometer_result *r)
+{
+    static const double degree = 0.017453292519943295, off = 2;
+    const double dip = asin(fmax(-1, fmin(1, r->value[IMK_MAGNETOMETER_DIP]))) / degree;
+    const double due = b->settings.dip / degree;
+    if (r->aligned && fabs(dip - due) > off)
+        imki_find(&b->findings, IMK_FINDING_WARNING, "mag_dip", NULL, IMKI_NUMBERS(dip, due));
+}
+
 /* ---- residuals ------------------------------------------------------------------------------- */
 
 static void check_residuals(imk_calibrate_log *b, const imk_magnetometer_result *r)
@@ -261,6 +271,7 @@ bool imki_magnetometer_result(imk_calibrate_log *b, imk_error *error)
     if (!check_coverage(b, r, error) || !check_order(b, r, error))
         return false;
     check_field(b, r);
+    check_dip(b, r);
     check_residuals(b, r);
     return true;
 }

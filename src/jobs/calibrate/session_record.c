@@ -90,6 +90,16 @@ static imk_status take_axes(imk_calibrate_record *log, int sensor, imk_findings 
     return IMK_OK;
 }
 
+/* Columns of this name whose unit is missing are none of a magnetometer. */
+static bool names_magnetometer(const imk_log *log)
+{
+    for (size_t c = 0; c < log->column_count; c++)
+        if (strncmp(log->column[c].name, "mag_", 4) == 0 &&
+            log->column[c].quantity != IMK_QUANTITY_MAGNETIC)
+            return true;
+    return false;
+}
+
 /* A magnetometer with three axes; else what there is of it is not looked at. */
 static imk_status take_magnetometer(imk_calibrate_record *log, imk_findings *findings,
                                     imk_error *error)
@@ -114,6 +124,8 @@ static imk_status take_magnetometer(imk_calibrate_record *log, imk_findings *fin
     else
         log->mag = imk_magnetometer_look(record);
     if (wanted && log->mag_counts)
+        return imki_fail(findings, error, IMK_ERROR_UNIT_MISSING, "mag_counts", NULL, 0, NULL);
+    if (wanted && axes < 3 && names_magnetometer(&log->log))
         return imki_fail(findings, error, IMK_ERROR_UNIT_MISSING, "mag_counts", NULL, 0, NULL);
     if (wanted && axes < 3)
         return imki_fail(findings, error, IMK_ERROR_COLUMN, "no_magnetometer", NULL,
