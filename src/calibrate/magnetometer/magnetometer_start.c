@@ -204,6 +204,16 @@ static void turn(imki_mag_fit *fit, const double r[3][3])
     memcpy(fit->x + IMKI_MAG_RESPONSE, a.m, sizeof a.m);
 }
 
+/* What a triangular frame has no part in is 0, not a rounding. */
+static void clear_corner(imki_mag_fit *fit)
+{
+    const imk_triad_frame frame = fit->problem->frame;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            if ((frame == IMK_FRAME_UPPER && j < i) || (frame == IMK_FRAME_LOWER && j > i))
+                fit->x[IMKI_MAG_RESPONSE + 3 * i + j] = 0.0;
+}
+
 void imki_mag_start(imki_mag_fit *fit)
 {
     const imk_magnetometer *problem = fit->problem;
@@ -235,6 +245,7 @@ void imki_mag_start(imki_mag_fit *fit)
         imk_matrix3 c;
         memcpy(c.m, r, sizeof c.m);
         turn(fit, (const double(*)[3])imk_matrix3_transpose(c).m);
+        clear_corner(fit);
     }
     for (int i = 0; fit->field_known && i < 9; i++)
         fit->x[IMKI_MAG_RESPONSE + i] *= fit->x[IMKI_MAG_FIELD] / problem->field;
