@@ -131,7 +131,7 @@ static double scale_of(const imki_mag_fit *fit, double *scratch)
     return imki_median(scratch, problem->count);
 }
 
-/* Huber's weights at first, then Tukey's [HUBER2009]. */
+/* Huber's weights at first, then Tukey's [HUBER1981] [BEATON1974]. */
 static void weigh(imki_mag_fit *fit, int pass, double scale)
 {
     const imk_magnetometer *problem = fit->problem;
@@ -147,7 +147,7 @@ static void weigh(imki_mag_fit *fit, int pass, double scale)
 }
 
 /* Those are refused that one set in a hundred without outliers would have one of. The scale is of a
- * median, which knows as much as 0.37 times as many residuals [HUBER2009]. */
+ * median, which knows as much as 0.37 times as many residuals [HUBER1981]. */
 static void refuse_outliers(imki_mag_fit *fit, double scale, double degrees)
 {
     const imk_magnetometer *problem = fit->problem;
