@@ -212,8 +212,7 @@ static int check_used(const session *b)
         const imk_procedure p = b->procedure[k];
         ferraris = ferraris || p == IMK_PROCEDURE_FERRARIS;
         thermal = thermal || p == IMK_PROCEDURE_THERMAL;
-        magnetic = magnetic || p == IMK_PROCEDURE_MAGNETOMETER ||
-                   p == IMK_PROCEDURE_MULTIPOSITION;
+        magnetic = magnetic || p == IMK_PROCEDURE_MAGNETOMETER || p == IMK_PROCEDURE_MULTIPOSITION;
         referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
                      p == IMK_PROCEDURE_CENTRIFUGE || p == IMK_PROCEDURE_SPIN;
     }

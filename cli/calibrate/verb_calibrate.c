@@ -10,9 +10,10 @@
 
 static const option result_options[] = {
     {"procedure", OPTION_TEXT, AT(procedure), .letter = 'p', .value = "NAME",
-     .help = "procedure of the test: multiposition, sixposition, ferraris, rate-table, tumble, "
-             "centrifuge, spin, thermal, magnetometer or repeatability; one for all logs, or one for "
-             "each log, separated by commas"},
+     .help =
+         "procedure of the test: multiposition, sixposition, ferraris, rate-table, tumble, "
+         "centrifuge, spin, thermal, magnetometer or repeatability; one for all logs, or one for "
+         "each log, separated by commas"},
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "MODEL",
      .help = "write the model here (.yaml or .json)"},
     {"into", OPTION_INTO, AT(into), .value = "MODEL",
@@ -50,8 +51,9 @@ static const option test_options[] = {
      .help = "strength of the Earth's magnetic field at the place, with 1 sigma, such as \"48.1 +- "
              "0.2 uT\"; sets the scale of the magnetometer"},
     {"dip", OPTION_TEXT, AT(dip), .value = "ANGLE",
-     .help = "dip of this field below the horizontal, negative if it points up, such as \"64 deg\"; "
-             "tells signs of the magnetometer's axes apart, as --position does"},
+     .help =
+         "dip of this field below the horizontal, negative if it points up, such as \"64 deg\"; "
+         "tells signs of the magnetometer's axes apart, as --position does"},
     {"no-earth", OPTION_FLAG, AT(settings.no_earth),
      .help = "the references do not contain the Earth's rotation; the gyro bias then includes it"},
     {"frame", OPTION_CHOICE, AT(settings.frame), .value = "FRAME",
@@ -215,7 +217,8 @@ const verb calibrate_verb = {
         "rates or forces that acted on the unit: columns reference_rate_x [deg/s] …, "
         "reference_force_x [g] … in the log (mean over the sample, in inertial space, gravity "
         "included), table_rate [deg/s] with --table-axis, or the programme of the table as a "
-        "motion file. thermal needs a column temperature. magnetometer needs any rotation by hand; with "
+        "motion file. thermal needs a column temperature. magnetometer needs any rotation by hand; "
+        "with "
         "multiposition, a magnetometer beside the accelerometers is calibrated and aligned to "
         "them. repeatability compares power cycles, "
         "each given as a log, a section of a log or a MODEL; models compare the scale factors "

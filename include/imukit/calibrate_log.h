@@ -86,11 +86,11 @@ typedef struct imk_calibrate_log_settings {
     int table_axis; /**< axis of the unit about which a column table_rate turns it, 0 to 2;
                          default -1: not known */
     /* magnetometers */
-    double field, field_sigma; /**< of the Earth at the place, with its 1 sigma [T]; default NaN: not
-                                    known, and the scale of the magnetometers is a convention */
-    double dip; /**< of this field, positive downwards [rad]: tells the signs of a magnetometer's axes;
-                     default NaN: by the place, if that is known */
-    bool activity;  /**< keep for each sample whether it is at rest; default false */
+    double field, field_sigma; /**< of the Earth at the place, with its 1 sigma [T]; default NaN:
+                                  not known, and the scale of the magnetometers is a convention */
+    double dip;    /**< of this field, positive downwards [rad]: tells the signs of a magnetometer's
+                      axes;    default NaN: by the place, if that is known */
+    bool activity; /**< keep for each sample whether it is at rest; default false */
 } imk_calibrate_log_settings;
 
 /** The defaults named above. */
@@ -120,8 +120,8 @@ typedef struct imk_calibrate_record {
     size_t diagnostic_count;
     imk_diagnostic_finding diagnostic[IMK_CALIBRATE_DIAGNOSTICS_MAX];
     imk_thermal_findings *thermal; /**< of the procedure "thermal", else NULL */
-    bool mag_counts;             /**< the magnetometer is in counts, and is not calibrated */
-    imk_magnetometer_record mag; /**< its magnetometer, if record.mag is there */
+    bool mag_counts;               /**< the magnetometer is in counts, and is not calibrated */
+    imk_magnetometer_record mag;   /**< its magnetometer, if record.mag is there */
 } imk_calibrate_record;
 
 /** A calibration: its records and its result. */
@@ -138,8 +138,8 @@ typedef struct imk_calibrate_log {
     size_t run_count;
     size_t diagnostic_count;
     imk_diagnostic_finding diagnostic[IMK_CALIBRATE_DIAGNOSTICS_MAX]; /**< of the solution */
-    imk_magnetometer *magnetometer;       /**< the problem; NULL: no record has one to calibrate */
-    imk_magnetometer_result *mag;         /**< its solution; NULL: there is none that can be used */
+    imk_magnetometer *magnetometer; /**< the problem; NULL: no record has one to calibrate */
+    imk_magnetometer_result *mag;   /**< its solution; NULL: there is none that can be used */
     imk_model model; /**< the result, to be written; its name is that of the model known before */
     imk_findings findings;
     size_t failed; /**< number of the record that could not be used; count: all of them together */

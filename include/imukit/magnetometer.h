@@ -36,18 +36,18 @@ enum {
 typedef struct imk_magnetometer_observation {
     double reading[3]; /**< [T] */
     double sigma[3];   /**< [T], > 0 */
-    double up[3];      /**< direction of the specific force at rest, body axes, unit norm; zeros: not
-                            known */
-    double up_sigma;   /**< 1 sigma of its tilt about each axis [rad]; 0: exact */
-    int record;        /**< the caller's: index of the record, and its samples */
+    double up[3];    /**< direction of the specific force at rest, body axes, unit norm; zeros: not
+                          known */
+    double up_sigma; /**< 1 sigma of its tilt about each axis [rad]; 0: exact */
+    int record;      /**< the caller's: index of the record, and its samples */
     size_t begin, end;
     /* Filled by imk_magnetometer_solve(): */
-    double field[3];     /**< u, body axes [T] */
-    double residual[2];  /**< of |u|, and of the field along `up` [T]; NaN: no `up` */
-    double distance;     /**< root mean square of residual/sigma (factor included) */
-    double weight;       /**< 1 used … 0 refused */
-    double adjusted[3];  /**< reading as fitted [T] */
-    double leverage;     /**< share of the residuals that the fit takes away */
+    double field[3];    /**< u, body axes [T] */
+    double residual[2]; /**< of |u|, and of the field along `up` [T]; NaN: no `up` */
+    double distance;    /**< root mean square of residual/sigma (factor included) */
+    double weight;      /**< 1 used … 0 refused */
+    double adjusted[3]; /**< reading as fitted [T] */
+    double leverage;    /**< share of the residuals that the fit takes away */
 } imk_magnetometer_observation;
 
 /** The problem. Start from imk_magnetometer_default(). */
@@ -75,20 +75,20 @@ typedef struct imk_magnetometer_result {
     double value[IMK_MAGNETOMETER_PARAMETERS]; /**< the dip is NaN if not aligned */
     double sigma[IMK_MAGNETOMETER_PARAMETERS];
     double covariance[IMK_MAGNETOMETER_PARAMETERS * IMK_MAGNETOMETER_PARAMETERS]; /**< row-major */
-    double freedom;             /**< degrees of freedom of the sigmas */
-    size_t parameter_count;     /**< number of independent parameters */
-    size_t equations, refused;  /**< scalar observations; observations without weight */
+    double freedom;                        /**< degrees of freedom of the sigmas */
+    size_t parameter_count;                /**< number of independent parameters */
+    size_t equations, refused;             /**< scalar observations; observations without weight */
     double chi_square, degrees_of_freedom; /**< by the stated sigmas, of what is not refused */
-    double factor;   /**< of the sigmas: sqrt(chi_square/degrees_of_freedom) */
-    double added;    /**< part that was added to each sigma instead, where residuals are far above
-                          the noise [T] */
-    double serial;   /**< variance of a mean over that of independent observations; 1: they are */
-    double rms[2];   /**< of the residuals of |u|, and along `up` [T] */
-    int nearest;     /**< number of the signed permutation nearest to A, imk_signed_axes_of(): not 0
-                          if the axes are not those of the accelerometers */
+    double factor; /**< of the sigmas: sqrt(chi_square/degrees_of_freedom) */
+    double added;  /**< part that was added to each sigma instead, where residuals are far above
+                        the noise [T] */
+    double serial; /**< variance of a mean over that of independent observations; 1: they are */
+    double rms[2]; /**< of the residuals of |u|, and along `up` [T] */
+    int nearest;   /**< number of the signed permutation nearest to A, imk_signed_axes_of(): not 0
+                        if the axes are not those of the accelerometers */
     double nearest_angle; /**< rotation between that permutation and A [rad] */
-    double spread;   /**< smallest eigenvalue of the covariance of the directions of the field: 1/3
-                          at best, 0 if their tips are in one plane */
+    double spread;    /**< smallest eigenvalue of the covariance of the directions of the field: 1/3
+                           at best, 0 if their tips are in one plane */
     double normal[3]; /**< across this plane, body axes */
     double advice[IMK_MAGNETOMETER_ADVICE][3]; /**< directions of the field, body axes, that would
                                                     tell most beside what there is */
@@ -109,13 +109,13 @@ IMK_API imk_status imk_magnetometer_solve(const imk_magnetometer *problem,
 
 /** How a record of a magnetometer looks. */
 typedef struct imk_magnetometer_record {
-    size_t updates;       /**< rows that differ from the row before, and the first */
-    size_t rows;          /**< rows that are numbers */
-    bool stuck[3];        /**< the axis never changes */
-    double saturated[3];  /**< reading at which the axis stays for 20 updates or more, its largest or
-                               smallest [T]; 0: none */
-    double noise[3];      /**< 1 sigma of one update, from neighbours [T] */
-    double step[3];       /**< smallest difference of neighbours that differ [T] */
+    size_t updates;      /**< rows that differ from the row before, and the first */
+    size_t rows;         /**< rows that are numbers */
+    bool stuck[3];       /**< the axis never changes */
+    double saturated[3]; /**< reading at which the axis stays for 20 updates or more, its largest or
+                              smallest [T]; 0: none */
+    double noise[3];     /**< 1 sigma of one update, from neighbours [T] */
+    double step[3];      /**< smallest difference of neighbours that differ [T] */
 } imk_magnetometer_record;
 /** Look at a record with a magnetometer. */
 IMK_API imk_magnetometer_record imk_magnetometer_look(const imk_test_record *record);

@@ -164,8 +164,8 @@ static inline void mag_turning(mag_bench *b, const mag_bench_plan *plan)
             w[i] = fade * w[i] + sqrt(1 - fade * fade) * rate * mag_normal(b);
             away[i] = slow * away[i] + sqrt(1 - slow * slow) * plan->wander * mag_normal(b);
         }
-        q = imk_quaternion_multiply(
-            q, imk_quaternion_from_rotation_vector((imk_vector3){{w[0] * dt, w[1] * dt, w[2] * dt}}));
+        q = imk_quaternion_multiply(q, imk_quaternion_from_rotation_vector(
+                                           (imk_vector3){{w[0] * dt, w[1] * dt, w[2] * dt}}));
         u = mag_in_body(q, mag_level(b));
         for (int i = 0; i < 3; i++)
             u.v[i] += away[i];

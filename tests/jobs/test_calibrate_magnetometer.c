@@ -15,7 +15,8 @@ enum { RATE = 50, HOLD = 4 * RATE, MOVE = 2 * RATE, POSES = 24, ROWS = POSES * (
 static const double gravity = 9.80665;
 static const double hard[3] = {12e-6, -8e-6, 30e-6};
 /* Soft iron of unit determinant, to 1e-5. */
-static const double soft[3][3] = {{1.02, 0.01, -0.02}, {0.005, 0.97, 0.003}, {0.001, 0.007, 1.01088}};
+static const double soft[3][3] = {
+    {1.02, 0.01, -0.02}, {0.005, 0.97, 0.003}, {0.001, 0.007, 1.01088}};
 
 static double column[6][ROWS]; /* accel_x … z, mag_x … z */
 static imk_calibrate_log *found;
@@ -75,8 +76,8 @@ static imk_status run(imk_procedure procedure, const imk_calibrate_log_settings 
         names[k - first] = name[k];
         data[k - first] = column[k];
     }
-    CHECK_OK(imk_array_source_make((size_t)(6 - first), names, data, ROWS, RATE, &array, &source,
-                                   NULL));
+    CHECK_OK(
+        imk_array_source_make((size_t)(6 - first), names, data, ROWS, RATE, &array, &source, NULL));
     const imk_calibrate_input input = {"record", procedure, &source};
     return imk_calibrate_logs(1, &input, settings, NULL, &found, &error);
 }

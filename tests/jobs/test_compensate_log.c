@@ -110,7 +110,8 @@ static void test_magnetometer(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bias_is_taken_out), cmocka_unit_test(test_magnetometer),
+        cmocka_unit_test(test_bias_is_taken_out),
+        cmocka_unit_test(test_magnetometer),
         cmocka_unit_test(test_missing_axis_is_a_finding),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

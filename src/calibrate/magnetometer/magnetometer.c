@@ -94,9 +94,8 @@ static size_t assess(imki_mag_fit *fit)
             for (int b = 0; b < e.count; b++) {
                 double g = 0.0;
                 for (int p = 0; p < IMKI_MAG_ALL; p++)
-                    g += e.gradient[a][p] *
-                         imki_dot(IMKI_MAG_ALL, e.gradient[b],
-                                  fit->covariance + (ptrdiff_t)p * IMKI_MAG_ALL);
+                    g += e.gradient[a][p] * imki_dot(IMKI_MAG_ALL, e.gradient[b],
+                                                     fit->covariance + (ptrdiff_t)p * IMKI_MAG_ALL);
                 square += e.residual[a] * e.information[a][b] * e.residual[b];
                 leverage += e.information[a][b] * g;
             }
@@ -236,8 +235,7 @@ static bool find_factor(imki_mag_fit *fit, double degrees, double *stated, int *
     for (int pass = 0; pass < PASSES && degrees > 0.0; pass++) {
         const double ratio = fit->chi_square / degrees;
         if (*stated / degrees > disturbed && fit->factor == 1.0) {
-            const double variance =
-                mean_variance(fit->problem) + fit->added * fit->added;
+            const double variance = mean_variance(fit->problem) + fit->added * fit->added;
             const double more = fit->added * fit->added + (ratio - 1.0) * variance;
             fit->added = sqrt(fmax(more, 0.0));
         } else {
@@ -351,7 +349,8 @@ static imk_status solve(imki_mag_fit *fit, imk_magnetometer_result *made, double
     if (equations < fit->free + 3)
         return imki_refuse(error, IMK_ERROR_TOO_SHORT, "attitude", (double)equations,
                            (double)(fit->free + 3), "more attitudes");
-    if (!converge(fit, FEW_STEPS, &made->iterations) || !drop_outliers(fit, scratch, &made->iterations))
+    if (!converge(fit, FEW_STEPS, &made->iterations) ||
+        !drop_outliers(fit, scratch, &made->iterations))
         return not_determined(fit, made, error);
     made->equations = equations;
     const size_t used = assess(fit);

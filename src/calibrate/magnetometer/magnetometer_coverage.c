@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Whether the attitudes of a magnetometer tell its parameters: the spread of the directions of the
- * field, the directions that would tell most, by the variance of the equation |u| = F there, and the
- * order of the axes that the response shows. */
+ * field, the directions that would tell most, by the variance of the equation |u| = F there, and
+ * the order of the axes that the response shows. */
 #include "magnetometer_internal.h"
 
 #include "imukit/linear_algebra.h"
@@ -24,8 +24,8 @@ static void find_spread(const imki_mag_fit *fit, imk_magnetometer_result *result
             for (int i = 0; pass == 0 && i < 3; i++)
                 mean[i] += u[i] / length / n;
             for (int i = 0; pass == 1 && i < 9; i++)
-                square[i] += (u[i / 3] / length - mean[i / 3]) *
-                             (u[i % 3] / length - mean[i % 3]) / n;
+                square[i] +=
+                    (u[i / 3] / length - mean[i / 3]) * (u[i % 3] / length - mean[i % 3]) / n;
         }
     if (imk_symmetric_eigen(3, square, value, vector) != IMK_OK)
         return;

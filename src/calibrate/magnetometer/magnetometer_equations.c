@@ -90,8 +90,7 @@ bool imki_mag_set_response(imki_mag_fit *fit)
     double cross[3];
     memcpy(a.m, fit->x + IMKI_MAG_RESPONSE, sizeof a.m);
     imki_cross3(a.m[1], a.m[2], cross);
-    const double scale =
-        fit->field_known ? 1.0 : cbrt(fabs(imki_dot3(a.m[0], cross)));
+    const double scale = fit->field_known ? 1.0 : cbrt(fabs(imki_dot3(a.m[0], cross)));
     for (int i = 0; i < 9; i++)
         a.m[i / 3][i % 3] /= scale;
     if (imk_matrix3_inverse(a, &fit->inverse) != IMK_OK)
@@ -189,9 +188,9 @@ void imki_mag_equate(const imki_mag_fit *fit, const imk_magnetometer_observation
     for (int i = 0; i < 3; i++) {
         e->adjusted[i] = o->reading[i];
         for (int k = 0; k < e->count; k++)
-            e->adjusted[i] -= v[i] * p[k][i] *
-                              (e->information[k][0] * e->residual[0] +
-                               e->information[k][1] * e->residual[1]);
+            e->adjusted[i] -=
+                v[i] * p[k][i] *
+                (e->information[k][0] * e->residual[0] + e->information[k][1] * e->residual[1]);
     }
 }
 
@@ -301,14 +300,14 @@ bool imki_mag_step(imki_mag_fit *fit, double *size)
         return false;
     *size = 0.0;
     for (int p = 0; p < IMKI_MAG_ALL; p++) {
-        change[p] = -imki_dot(IMKI_MAG_ALL, fit->covariance + (ptrdiff_t)p * IMKI_MAG_ALL,
-                              fit->gradient);
+        change[p] =
+            -imki_dot(IMKI_MAG_ALL, fit->covariance + (ptrdiff_t)p * IMKI_MAG_ALL, fit->gradient);
         const double sigma = sqrt(fit->covariance[p * (IMKI_MAG_ALL + 1)]);
         if (sigma > 0.0)
             *size = fmax(*size, fabs(change[p]) / sigma);
         /* No step turns or stretches by more than a quarter. */
-        const double whole = p < IMKI_MAG_RESPONSE || p == IMKI_MAG_FIELD ? fit->x[IMKI_MAG_FIELD]
-                                                                          : 1.0;
+        const double whole =
+            p < IMKI_MAG_RESPONSE || p == IMKI_MAG_FIELD ? fit->x[IMKI_MAG_FIELD] : 1.0;
         shorter = fmin(shorter, 0.25 * whole / (fabs(change[p]) + 1e-30));
     }
     for (int p = 0; p < IMKI_MAG_ALL; p++)

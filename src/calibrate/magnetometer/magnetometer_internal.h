@@ -20,7 +20,7 @@ typedef struct imki_mag_fit {
     const imk_magnetometer *problem;
     bool aligned, field_known;
     double x[IMKI_MAG_ALL];
-    imk_matrix3 inverse; /* of A */
+    imk_matrix3 inverse;  /* of A */
     double factor, added; /* sigma used: sqrt((factor sigma)^2 + added^2) */
     /* dx = map d(independent parameters) */
     size_t free;
@@ -39,8 +39,8 @@ static inline bool imki_mag_has_up(const imk_magnetometer_observation *o)
 /* magnetometer_start.c: hard iron, A and field by algebra, good enough to iterate from. */
 void imki_mag_start(imki_mag_fit *fit);
 
-/* magnetometer_equations.c: the inverse of A, after the convention of its scale, and which parameters
- * are independent; false: A is singular. */
+/* magnetometer_equations.c: the inverse of A, after the convention of its scale, and which
+ * parameters are independent; false: A is singular. */
 bool imki_mag_set_response(imki_mag_fit *fit);
 /* The equations of one observation. */
 typedef struct imki_mag_equations {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Readings of a magnetometer from a record: means at rest, and short means in motion. A sensor that
- * is slower than the log repeats its rows: only a row that differs from the one before is an update.
- * At rest the repetition shows in the autocorrelation, and a coarse step in the step
+ * is slower than the log repeats its rows: only a row that differs from the one before is an
+ * update. At rest the repetition shows in the autocorrelation, and a coarse step in the step
  * (static_summary.c), which is looked for in the whole record. */
 #include "magnetometer_internal.h"
 
@@ -30,10 +30,8 @@ bool imk_magnetometer_rest(const imk_test_record *record, const imk_magnetometer
                            size_t begin, size_t end, imk_magnetometer_observation *o)
 {
     double step[2][IMK_AXES_MAX] = {{0.0}};
-    imk_test_record as_forces = {.count = record->count,
-                                 .dt = record->dt,
-                                 .time = record->time,
-                                 .axis_count = {0, 3}};
+    imk_test_record as_forces = {
+        .count = record->count, .dt = record->dt, .time = record->time, .axis_count = {0, 3}};
     for (int i = 0; i < 3; i++)
         as_forces.reading[IMK_ACCEL][i] = record->mag[i];
     memcpy(step[IMK_ACCEL], look->step, sizeof look->step);
@@ -84,8 +82,8 @@ static bool next_update(updates *u, double m[3], size_t *row)
 }
 
 /* Noise from second differences x0 - 2 x1 + x2 of updates, variance 6 of one. The unit is turned
- * during some of them: their logarithms' mean is moved less than that of squares, so the square root
- * of small ones counts. */
+ * during some of them: their logarithms' mean is moved less than that of squares, so the square
+ * root of small ones counts. */
 static void add_difference(const double m[3][3], double sum[3], double *count)
 {
     for (int i = 0; i < 3; i++)
@@ -123,8 +121,8 @@ imk_magnetometer_record imk_magnetometer_look(const imk_test_record *record)
     /* E sqrt|z| of a standard normal is 2^(1/4) Gamma(3/4)/sqrt(pi). */
     static const double root = 0.8221789586624;
     imk_magnetometer_record found = {.rows = 0};
-    extremes e = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {0}, {0}, {0},
-                  {0}};
+    extremes e = {
+        {HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {0}, {0}, {0}, {0}};
     updates u = {.record = record};
     double m[3][3] = {{0.0}}, sum[3] = {0.0, 0.0, 0.0}, count = 0.0, changed[3] = {0.0, 0.0, 0.0};
     size_t row;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Where the fit of a magnetometer begins. The ellipsoid by algebra, q . (squares, products,
  * components) = 1 of readings about their middle, by least squares; where that is no ellipsoid, a
- * sphere. Then its rotation from the dip: y . R f = -F sin(dip) is linear in the elements of R, which
- * are the null vector of ten unknowns; the 24 rotations that exchange axes are tried as well. */
+ * sphere. Then its rotation from the dip: y . R f = -F sin(dip) is linear in the elements of R,
+ * which are the null vector of ten unknowns; the 24 rotations that exchange axes are tried as well.
+ */
 #include "magnetometer_internal.h"
 
 #include "imukit/linear_algebra.h"

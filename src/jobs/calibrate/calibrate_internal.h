@@ -8,8 +8,7 @@
 #include "imukit/calibrate_log.h"
 
 static const char *const imki_sensor_keys[IMK_KINDS] = {"gyro", "accel", "mag"};
-static const char *const imki_sensor_titles[IMK_KINDS] = {"gyro", "accelerometer",
-                                                            "magnetometer"};
+static const char *const imki_sensor_titles[IMK_KINDS] = {"gyro", "accelerometer", "magnetometer"};
 static const char *const imki_sensor_units[IMK_KINDS] = {"rad/s", "m/s^2", "T"};
 
 /* session_record.c: the name of a record without its folders. */
@@ -30,8 +29,8 @@ imk_status imki_solve(imk_calibrate_log *b, imk_error *error);
 /* calibrate_magnetometer.c: the magnetometer of the records, beside the solution of the other
  * sensors if there is one: what cannot be used then is a warning. */
 imk_status imki_calibrate_magnetometer(imk_calibrate_log *b, imk_error *error);
-/* magnetometer_findings.c: what is told of its records, and of the solution. false: the result is of
- * no use, and `error` and a failure say why. */
+/* magnetometer_findings.c: what is told of its records, and of the solution. false: the result is
+ * of no use, and `error` and a failure say why. */
 bool imki_magnetometer_records(imk_calibrate_log *b, imk_error *error);
 bool imki_magnetometer_result(imk_calibrate_log *b, imk_error *error);
 /* Why there is no solution. @return as the record or the calibration goes on */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The magnetometer beside the other sensors: its means at rest with the vertical of the accelerometers
- * that the solution has found, or its readings while the unit is turned; then its parameters as
- * parameters of the result. */
+/* The magnetometer beside the other sensors: its means at rest with the vertical of the
+ * accelerometers that the solution has found, or its readings while the unit is turned; then its
+ * parameters as parameters of the result. */
 #include "calibrate_internal.h"
 
 #include "jobs/job_internal.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What is told of a magnetometer: its records, then its solution. What cannot be used is the failure
- * of a calibration of it alone, and a warning beside the solution of other sensors, which is then
- * given without it. */
+/* What is told of a magnetometer: its records, then its solution. What cannot be used is the
+ * failure of a calibration of it alone, and a warning beside the solution of other sensors, which
+ * is then given without it. */
 #include "calibrate_internal.h"
 
 #include "jobs/job_internal.h"
@@ -15,11 +15,12 @@
 /* Field of the Earth on the ground [T] [IGRF14], and how far off a sensor's scale is. */
 static const double field_least = 22e-6, field_most = 67e-6, scale_off = 0.2;
 
-/* A share of the field by which residuals are doubted: as much as a third of a degree of heading. */
+/* A share of the field by which residuals are doubted: as much as a third of a degree of heading.
+ */
 static const double disturbed = 0.005;
 
-/* 1 sigma of the response, and of the hard iron over the field, from which on attitudes are too much
- * alike: half a degree of heading; and the same that is of no use. */
+/* 1 sigma of the response, and of the hard iron over the field, from which on attitudes are too
+ * much alike: half a degree of heading; and the same that is of no use. */
 static const double weak = 0.01, useless = 0.1;
 
 /* Axes within this of others' places are those [rad]; a mounting stands somewhere between. */
@@ -108,9 +109,9 @@ static bool check_coverage(imk_calibrate_log *b, const imk_magnetometer_result *
     char where[96];
     double worst = 0;
     for (int p = 0; p < IMK_MAGNETOMETER_FIELD; p++)
-        worst = fmax(worst, r->sigma[p] / (p < IMK_MAGNETOMETER_RESPONSE
-                                               ? r->value[IMK_MAGNETOMETER_FIELD]
-                                               : 1));
+        worst =
+            fmax(worst, r->sigma[p] /
+                            (p < IMK_MAGNETOMETER_RESPONSE ? r->value[IMK_MAGNETOMETER_FIELD] : 1));
     imki_magnetometer_directions(r, where, sizeof where);
     if (worst > useless)
         (void)imki_magnetometer_useless(b, IMK_ERROR_SINGULAR, "mag_coverage", where,
@@ -176,8 +177,8 @@ static bool check_order(imk_calibrate_log *b, const imk_magnetometer_result *r, 
     static const double degree = 0.017453292519943295;
     const double sine = r->value[IMK_MAGNETOMETER_DIP], known = known_dip(b);
     const double dip = asin(fmax(-1, fmin(1, sine))) / degree;
-    const bool opposite = known != 0 && sine * known < 0 &&
-                          fabs(sine) > 5 * r->sigma[IMK_MAGNETOMETER_DIP];
+    const bool opposite =
+        known != 0 && sine * known < 0 && fabs(sine) > 5 * r->sigma[IMK_MAGNETOMETER_DIP];
     char words[96], one[48], other[48];
     if (!r->aligned || (r->nearest == 0 && !opposite))
         return true;
@@ -197,9 +198,9 @@ static bool check_order(imk_calibrate_log *b, const imk_magnetometer_result *r, 
         return true;
     }
     snprintf(words, sizeof words, "%.46s\t%.46s", one, other);
-    (void)imki_magnetometer_useless(
-        b, IMK_ERROR_CONFLICT, known != 0 ? "mag_axes_known" : "mag_axes", words,
-        IMKI_NUMBERS(fabs(dip), second ? dip < 0 : dip > 0), error);
+    (void)imki_magnetometer_useless(b, IMK_ERROR_CONFLICT,
+                                    known != 0 ? "mag_axes_known" : "mag_axes", words,
+                                    IMKI_NUMBERS(fabs(dip), second ? dip < 0 : dip > 0), error);
     return false;
 }
 

@@ -114,9 +114,9 @@ static imk_status take_magnetometer(imk_calibrate_record *log, imk_findings *fin
             continue;
         axes++;
         record->mag[i] = log->log.data[column];
-        log->mag_counts = log->mag_counts ||
-                          imk_dimension_equal(log->log.column[column].unit.dimension,
-                                              imk_unit_of("count").dimension);
+        log->mag_counts =
+            log->mag_counts || imk_dimension_equal(log->log.column[column].unit.dimension,
+                                                   imk_unit_of("count").dimension);
     }
     if (axes < 3 || log->mag_counts)
         for (int i = 0; i < 3; i++)

@@ -27,10 +27,9 @@ void imki_magnetic_start(const imk_record_source *source, imk_compensate_log *lo
     magnetic->present = false;
     if (triad->present && there) {
         for (int i = 0; i < 9; i++)
-            a.m[i / 3][i % 3] = (1 + triad->scale_factor.fixed.value[i / 3]) *
-                                    triad->direction[i / 3][i % 3] +
-                                triad->misalignment.value[i / 3][i % 3] +
-                                triad->cross_axis.value[i / 3][i % 3];
+            a.m[i / 3][i % 3] =
+                (1 + triad->scale_factor.fixed.value[i / 3]) * triad->direction[i / 3][i % 3] +
+                triad->misalignment.value[i / 3][i % 3] + triad->cross_axis.value[i / 3][i % 3];
         magnetic->present = is_usable(source, triad, magnetic->column) &&
                             imk_matrix3_inverse(a, &magnetic->inverse) == IMK_OK;
         if (!magnetic->present)

@@ -43,9 +43,9 @@ enum { TERM, SENSITIVITY, STAYS, LISTS, UNLISTED };
 static bool is_fixed(const imki_field *field)
 {
     const int term = imki_field_term(field);
-    return term >= 0 && (imki_terms[term].form == IMKI_FORM_ONE ||
-                         imki_terms[term].form == IMKI_FORM_INPUT ||
-                         imki_terms[term].form == IMKI_FORM_SEEN);
+    return term >= 0 &&
+           (imki_terms[term].form == IMKI_FORM_ONE || imki_terms[term].form == IMKI_FORM_INPUT ||
+            imki_terms[term].form == IMKI_FORM_SEEN);
 }
 
 static int list_of(const imki_field *field, int kind)

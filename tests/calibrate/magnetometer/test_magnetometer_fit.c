@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The fit of a magnetometer: intervals hold, noise makes no bias, what is not determined is refused,
- * outliers and repeated rows do not mislead. Full figures: experiments/coverage_magnetometer.c. */
+/* The fit of a magnetometer: intervals hold, noise makes no bias, what is not determined is
+ * refused, outliers and repeated rows do not mislead. Full figures:
+ * experiments/coverage_magnetometer.c. */
 #include "../coverage.h"
 #include "../magnetometer_bench.h"
 #include "check.h"
@@ -16,12 +17,8 @@ static const mag_bench_plan usual = {.rests = 24,
                                      .field = 48e-6,
                                      .dip = 1.1,
                                      .field_sigma = -1};
-static const mag_bench_plan turned = {.rows = 2000,
-                                      .noise = 2e-6,
-                                      .field = 48e-6,
-                                      .dip = 1.1,
-                                      .field_sigma = 0,
-                                      .no_up = true};
+static const mag_bench_plan turned = {
+    .rows = 2000, .noise = 2e-6, .field = 48e-6, .dip = 1.1, .field_sigma = 0, .no_up = true};
 
 /* Each interval holds as often as it says: of all numbers of all benches at least as many as have a
  * chance of 1e-6 to be fewer, if they were independent; each number by itself as well. */
@@ -58,9 +55,9 @@ static void test_coverage(void **state)
     check_coverage(&turned, 15);
 }
 
-/* Mean of (estimate - truth)/sigma of the scale. By algebra, |m - h|^2 = F^2 of readings with noise s
- * makes the sphere too large by s^2/F^2, 0.7 % here, which is more than a sigma of a bench. The mean
- * of 100 benches without bias is within 5.3/10 with a probability of 1 - 1e-7. */
+/* Mean of (estimate - truth)/sigma of the scale. By algebra, |m - h|^2 = F^2 of readings with noise
+ * s makes the sphere too large by s^2/F^2, 0.7 % here, which is more than a sigma of a bench. The
+ * mean of 100 benches without bias is within 5.3/10 with a probability of 1 - 1e-7. */
 static void test_noise_makes_no_bias(void **state)
 {
     (void)state;
@@ -269,11 +266,14 @@ static void test_look(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_coverage),        cmocka_unit_test(test_noise_makes_no_bias),
-        cmocka_unit_test(test_repeated_rows),   cmocka_unit_test(test_steel),
-        cmocka_unit_test(test_not_determined),  cmocka_unit_test(test_exchanged_axes),
-        cmocka_unit_test(test_frames),          cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_look)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_coverage),
+                                       cmocka_unit_test(test_noise_makes_no_bias),
+                                       cmocka_unit_test(test_repeated_rows),
+                                       cmocka_unit_test(test_steel),
+                                       cmocka_unit_test(test_not_determined),
+                                       cmocka_unit_test(test_exchanged_axes),
+                                       cmocka_unit_test(test_frames),
+                                       cmocka_unit_test(test_refusals),
+                                       cmocka_unit_test(test_look)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

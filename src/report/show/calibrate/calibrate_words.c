@@ -197,7 +197,8 @@ static void show_correlated(const imk_calibrate_log *b, imk_result *result)
             const double value = r->covariance[i * n + j] / (r->sigma[i] * r->sigma[j]);
             char one[IMK_MODEL_PARAMETER_NAME], other[IMK_MODEL_PARAMETER_NAME];
             /* Pairs that a symmetric frame ties are one number. */
-            if (!(fabs(value) > 0.9 && fabs(value) < 1 - 1e-9) || imk_model_parameter_name(r->parameter[i], one) != IMK_OK ||
+            if (!(fabs(value) > 0.9 && fabs(value) < 1 - 1e-9) ||
+                imk_model_parameter_name(r->parameter[i], one) != IMK_OK ||
                 imk_model_parameter_name(r->parameter[j], other) != IMK_OK)
                 continue;
             imk_result_line(result, "Correlation of %s and %s: %+.4f.", other, one, value);

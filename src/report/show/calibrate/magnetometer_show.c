@@ -46,9 +46,9 @@ void imki_magnetometer_data(const imk_calibrate_log *b, imk_result *result)
     if (!imki_begin_object(result, "magnetometer", r))
         return;
     imk_result_flag(result, "aligned", r->aligned);
-    imk_result_text(result, "frame",
-                    imk_triad_frame_name(r->aligned ? b->calibration->frame
-                                                    : b->magnetometer->frame));
+    imk_result_text(
+        result, "frame",
+        imk_triad_frame_name(r->aligned ? b->calibration->frame : b->magnetometer->frame));
     imk_result_flag(result, "field_known", r->field_known);
     imk_result_quantity(result, "field", r->value[IMK_MAGNETOMETER_FIELD], "T");
     imk_result_quantity(result, "field_sigma", r->sigma[IMK_MAGNETOMETER_FIELD], "T");
@@ -89,7 +89,8 @@ void imki_magnetometer_remarks(const imk_calibrate_log *b, imk_result *result)
     imk_readable_value(1e6 * r->value[IMK_MAGNETOMETER_FIELD],
                        1e6 * r->sigma[IMK_MAGNETOMETER_FIELD], 5, field, sizeof field);
     if (r->field_known)
-        imk_result_line(result, "Magnetometer: its scale is that of the field given, %s uT.", field);
+        imk_result_line(result, "Magnetometer: its scale is that of the field given, %s uT.",
+                        field);
     else
         imk_result_line(result,
                         "Magnetometer: the field is not known (--field), so its scale is a "
@@ -104,9 +105,10 @@ void imki_magnetometer_remarks(const imk_calibrate_log *b, imk_result *result)
         return;
     }
     imk_readable_value(dip_of(r) / degree, dip_sigma_of(r) / degree, 5, dip, sizeof dip);
-    imk_result_line(result,
-                    "It is aligned to the axes of the accelerometers, against which it is turned by "
-                    "%.3g deg: the dip of the field is the same in all attitudes, %s deg. Hard iron "
-                    "is its bias; soft iron, scale and alignment are one matrix.",
-                    r->nearest_angle / degree, dip);
+    imk_result_line(
+        result,
+        "It is aligned to the axes of the accelerometers, against which it is turned by "
+        "%.3g deg: the dip of the field is the same in all attitudes, %s deg. Hard iron "
+        "is its bias; soft iron, scale and alignment are one matrix.",
+        r->nearest_angle / degree, dip);
 }
