@@ -283,8 +283,8 @@ static const struct message {
                    "in the header, such as mag_x [uT]"},
     {"no_magnetometer", "{record} has {0} of the columns mag_x, mag_y, mag_z, and --procedure "
                         "magnetometer needs all three; name them with --columns"},
-    {"magnetometer_only", "{record} has a magnetometer, but no gyro and no accelerometer; use "
-                          "--procedure magnetometer"},
+    {"magnetometer_only", "{record} has a magnetometer, but no gyro and no accelerometer; "
+                          "imukit calibrate --procedure magnetometer calibrates it"},
     /* magnetometer_findings.c, calibrate_magnetometer.c */
     {"mag_stuck", "{other}: {name} never changes its reading, so the magnetometer is not "
                   "calibrated: the axis is dead, or the column holds something else"},
@@ -299,6 +299,7 @@ static const struct message {
      "the magnetometer is in counts and is not calibrated: state the unit of its "
      "columns in the header, such as mag_x [uT]"},
     {"mag_no_use_of_field", "--field and --dip are for magnetometers, and none is calibrated here"},
+    {"mag_not_named", "the magnetometer is left as it is, because --estimate names other terms"},
     {"mag_many", "the magnetometer is left out: {0} other parameters are estimated, and there is "
                  "room for {1} in all; leave some out with --estimate or --without"},
     {"mag_few", "{0} attitudes are too few to calibrate the magnetometer: use 20 or more"},

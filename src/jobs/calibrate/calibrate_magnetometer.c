@@ -232,6 +232,10 @@ imk_status imki_calibrate_magnetometer(imk_calibrate_log *b, imk_error *error)
         return b->result ? IMK_OK : error->status;
     if (capacity == 0)
         return IMK_OK;
+    if (b->settings.estimate) {
+        imki_find(&b->findings, IMK_FINDING_NOTE, "mag_not_named", NULL, 0, NULL);
+        return IMK_OK;
+    }
     imk_magnetometer *problem = imki_arena_take(b->memory, sizeof *problem);
     imk_magnetometer_observation *observation =
         imki_arena_take(b->memory, capacity * sizeof *observation);
