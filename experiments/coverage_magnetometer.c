@@ -40,13 +40,13 @@ static void count(const mag_bench *b, counts *c)
     }
 }
 
-static void print(const plan *plan, const counts *c)
+static void print(const char *name, const counts *c)
 {
     static const char *const names[IMK_MAGNETOMETER_PARAMETERS] = {
         "hard iron x", "hard iron y", "hard iron z", "xx", "xy", "xz",    "yx",
         "yy",          "yz",          "zx",          "zy", "zz", "field", "sin(dip)"};
     printf("%s: %d benches, %d not solved, %.2f observations refused, %.1f %% doubted\n",
-           plan->name, c->done, c->refused_benches, c->refused / c->done,
+           name, c->done, c->refused_benches, c->refused / c->done,
            100.0 * c->doubted / c->done);
     for (int p = 0; p < IMK_MAGNETOMETER_PARAMETERS; p++) {
         const double n = c->done;
@@ -168,7 +168,7 @@ int main(int argc, char **argv)
                 count(b, &c);
             else
                 c.refused_benches++;
-        print(&plans[i], &c);
+        print(plans[i].name, &c);
         fflush(stdout);
     }
     free(b);

@@ -207,11 +207,12 @@ static int assign_procedures(session *b)
 static int check_used(const session *b)
 {
     const calibrate_options *o = b->options;
-    bool referenced = false, ferraris = false, thermal = false, magnetic = false;
+    bool referenced = false, ferraris = false, thermal = false, magnetic = false, compass = false;
     for (size_t k = 0; k < b->count && !b->settings.repeatability; k++) {
         const imk_procedure p = b->procedure[k];
         ferraris = ferraris || p == IMK_PROCEDURE_FERRARIS;
         thermal = thermal || p == IMK_PROCEDURE_THERMAL;
+        compass = compass || p == IMK_PROCEDURE_MAGNETOMETER;
         magnetic = magnetic || p == IMK_PROCEDURE_MAGNETOMETER || p == IMK_PROCEDURE_MULTIPOSITION;
         referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
                      p == IMK_PROCEDURE_CENTRIFUGE || p == IMK_PROCEDURE_SPIN;
@@ -222,6 +223,9 @@ static int check_used(const session *b)
                                "rate-table, tumble, centrifuge, spin and thermal");
     if (o->motion_offset && !o->motion)
         return command_misused("--motion-offset is used with --motion only: add --motion");
+    if (o->settings.estimate && compass)
+        return command_misused("--estimate names terms of gyros and accelerometers; --procedure "
+                               "magnetometer always estimates the same: leave one of them out");
     if ((o->field || o->dip) && !magnetic)
         return command_misused(none, o->field ? "field" : "dip", o->procedure,
                                "multiposition and magnetometer");

@@ -173,7 +173,8 @@ IMK_API imk_status imk_calibrate_logs(size_t count, const imk_calibrate_input *i
  *  @param job        NULL: one thread, memory of the C library, no progress
  *  @return IMK_ERROR_RANGE ("count": 0, or more than IMK_TEST_RECORDS_MAX; "procedure"; "gravity":
  *          value), IMK_ERROR_CONFLICT ("frame": gravity alone does not tell the reference frame;
- *          "closed_form": not one ferraris record; "estimate": with or without beside it), _MEMORY
+ *          "closed_form": not one ferraris record; "estimate": with or without beside it, or a
+ *          record of the procedure magnetometer), _MEMORY
  */
 IMK_API imk_status imk_calibrate_log_create(size_t count, const imk_procedure *procedure,
                                             const imk_calibrate_log_settings *settings,

@@ -165,12 +165,15 @@ static void refuse_outliers(imki_mag_fit *fit, double scale, double degrees)
         problem->observation[k].weight = 1.0;
 }
 
+/* From the start to where outliers are known. */
 static bool drop_outliers(imki_mag_fit *fit, double *scratch, int *iterations)
 {
-    const size_t equations = assess(fit);
     enum { REDUNDANT = 8 };
+    if (!converge(fit, FEW_STEPS, iterations))
+        return false;
+    const size_t equations = assess(fit);
     if (!fit->problem->robust || equations < fit->free + REDUNDANT)
-        return converge(fit, STEPS, iterations);
+        return true;
     for (int pass = 0; pass < ROBUST_PASSES; pass++) {
         const double scale = scale_of(fit, scratch);
         if (!(scale > 0.0))
@@ -181,7 +184,7 @@ static bool drop_outliers(imki_mag_fit *fit, double *scratch, int *iterations)
         (void)assess(fit);
     }
     refuse_outliers(fit, scale_of(fit, scratch), (double)(equations - fit->free));
-    return converge(fit, STEPS, iterations);
+    return true;
 }
 
 /* ---- how well ---------------------------------------------------------------------------------
@@ -349,8 +352,10 @@ static imk_status solve(imki_mag_fit *fit, imk_magnetometer_result *made, double
     if (equations < fit->free + 3)
         return imki_refuse(error, IMK_ERROR_TOO_SHORT, "attitude", (double)equations,
                            (double)(fit->free + 3), "more attitudes");
-    if (!converge(fit, FEW_STEPS, &made->iterations) ||
-        !drop_outliers(fit, scratch, &made->iterations))
+    fit->rough = true;
+    const bool begun = drop_outliers(fit, scratch, &made->iterations);
+    fit->rough = false;
+    if (!begun || !converge(fit, STEPS, &made->iterations))
         return not_determined(fit, made, error);
     made->equations = equations;
     const size_t used = assess(fit);

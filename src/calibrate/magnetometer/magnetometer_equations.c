@@ -156,7 +156,7 @@ void imki_mag_equate(const imki_mag_fit *fit, const imk_magnetometer_observation
     const double F = fit->x[IMKI_MAG_FIELD], s = fit->x[IMKI_MAG_DIP];
     double here[3], y[3], along[3], p[2][3], v[3], covariance[3] = {0.0, 0.0, 0.0}, trace = 0.0;
     field_of(fit, o->reading, here);
-    field_of(fit, o->adjusted, y);
+    field_of(fit, fit->rough ? o->reading : o->adjusted, y);
     for (int i = 0; i < 3; i++) {
         along[i] = y[i] / F;
         v[i] = variance_of(fit, o, i);
@@ -169,7 +169,7 @@ void imki_mag_equate(const imki_mag_fit *fit, const imk_magnetometer_observation
     to_reading(fit, along, p[0]);
     to_reading(fit, o->up, p[1]);
     fill_gradient(p[0], y, e->gradient[0]);
-    e->gradient[0][IMKI_MAG_FIELD] = -1.0;
+    e->gradient[0][IMKI_MAG_FIELD] = -(imki_dot3(y, y) + F * F) / (2.0 * F * F);
     if (e->count == 2) {
         e->residual[1] = imki_dot3(here, o->up) + F * s;
         fill_gradient(p[1], y, e->gradient[1]);

@@ -20,7 +20,8 @@ typedef struct imki_mag_fit {
     const imk_magnetometer *problem;
     bool aligned, field_known;
     double x[IMKI_MAG_ALL];
-    imk_matrix3 inverse;  /* of A */
+    imk_matrix3 inverse; /* of A */
+    bool rough; /* outliers are still there: derivatives at the readings, as of least squares */
     double factor, added; /* sigma used: sqrt((factor sigma)^2 + added^2) */
     /* dx = map d(independent parameters) */
     size_t free;

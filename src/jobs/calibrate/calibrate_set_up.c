@@ -150,6 +150,8 @@ imk_status imki_calibrate_set_up(imk_calibrate_log *b, const imk_procedure *proc
         if ((int)procedure[k] < 0 || procedure[k] >= IMK_PROCEDURES)
             return imk_error_set(error, IMK_ERROR_RANGE, "procedure", NULL, NULL);
         b->record[k].procedure = procedure[k];
+        if (s->estimate && procedure[k] == IMK_PROCEDURE_MAGNETOMETER)
+            return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate", NULL, NULL);
     }
     if (s->estimate && (s->with || s->without))
         return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate", NULL, NULL);
