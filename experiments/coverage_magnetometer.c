@@ -111,7 +111,16 @@ int main(int argc, char **argv)
                                    .field = 48e-6,
                                    .dip = 1.1,
                                    .field_sigma = -1}},
-                                 {"24 rests of 4 s, no accelerometers",
+                                 {"24 rests of 4 s, the vertical is the larger error, and a third larger than stated",
+         {.rests = 24,
+          .rows = 400,
+          .noise = 0.1e-6,
+          .up_sigma = 2e-3,
+          .up_stated = 1.5e-3,
+          .field = 48e-6,
+          .dip = 1.1,
+          .field_sigma = -1}},
+        {"24 rests of 4 s, no accelerometers",
                                   {.rests = 24,
                                    .rows = 400,
                                    .noise = 0.3e-6,
@@ -163,7 +172,9 @@ int main(int argc, char **argv)
         counts c = {.done = 0};
         if (only < sizeof plans && only != i)
             continue;
-        for (int n = 0; n < benches; n++)
+        /* A minute of single readings takes as long as hundred rests. */
+        const int runs = plans[i].bench.rests > 0 ? benches : (benches + 3) / 4;
+        for (int n = 0; n < runs; n++)
             if (mag_bench_run(b, &plans[i].bench, seed, (uint32_t)n) == IMK_OK)
                 count(b, &c);
             else

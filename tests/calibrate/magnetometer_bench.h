@@ -23,6 +23,7 @@ typedef struct mag_bench_plan {
     double wander;      /* the same while it is turned, over some seconds [T] */
     double bad;         /* share of rests next to steel: 10 uT more */
     double up_sigma;    /* of the vertical [rad] */
+    double up_stated;   /* what is said of it; 0: the truth [rad] */
     double field, dip;  /* [T], [rad] */
     double tilt;        /* attitudes within this of each other [rad]; 0: all */
     double field_sigma; /* given with this sigma; 0: exactly; negative: not given */
@@ -130,7 +131,7 @@ static inline void mag_rest(mag_bench *b, const mag_bench_plan *plan, int k,
     }
     for (int i = 0; i < 3 && !plan->no_up; i++)
         o->up[i] = away[i] / sqrt(norm);
-    o->up_sigma = plan->up_sigma;
+    o->up_sigma = plan->up_stated > 0.0 ? plan->up_stated : plan->up_sigma;
 }
 
 static inline void mag_rests(mag_bench *b, const mag_bench_plan *plan)

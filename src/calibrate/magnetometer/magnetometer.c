@@ -80,6 +80,15 @@ static bool converge(imki_mag_fit *fit, int steps, int *iterations)
     return imki_mag_invert(fit);
 }
 
+/* a^T Cov b */
+static double spread_of(const imki_mag_fit *fit, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int p = 0; p < IMKI_MAG_ALL; p++)
+        sum += a[p] * imki_dot(IMKI_MAG_ALL, b, fit->covariance + (ptrdiff_t)p * IMKI_MAG_ALL);
+    return sum;
+}
+
 /* Residuals of each, with what the fit takes away of them. @return scalar equations with weight */
 static size_t assess(imki_mag_fit *fit)
 {
@@ -92,12 +101,8 @@ static size_t assess(imki_mag_fit *fit)
         imki_mag_equate(fit, o, &e);
         for (int a = 0; a < e.count; a++)
             for (int b = 0; b < e.count; b++) {
-                double g = 0.0;
-                for (int p = 0; p < IMKI_MAG_ALL; p++)
-                    g += e.gradient[a][p] * imki_dot(IMKI_MAG_ALL, e.gradient[b],
-                                                     fit->covariance + (ptrdiff_t)p * IMKI_MAG_ALL);
                 square += e.residual[a] * e.information[a][b] * e.residual[b];
-                leverage += e.information[a][b] * g;
+                leverage += e.information[a][b] * spread_of(fit, e.gradient[a], e.gradient[b]);
             }
         o->leverage = o->weight * leverage / e.count;
         o->distance = sqrt(square / e.count / fmax(1.0 - o->leverage, 0.05));
@@ -231,22 +236,76 @@ static double serial_of(const imk_magnetometer *problem, double *scratch)
     return most;
 }
 
-/* Sigmas by the residuals. *stated: chi-square by the sigmas as they were given. */
-static bool find_factor(imki_mag_fit *fit, double degrees, double *stated, int *iterations)
+/* Of |u|, and of the dip with what |u| says of it taken away: chi-square and degrees of freedom;
+ * and the share of the vertical's variance in that of the second. */
+typedef struct parts {
+    double chi_square[2], degrees[2], vertical;
+} parts;
+
+static parts parts_of(const imki_mag_fit *fit, double degrees)
 {
-    *stated = fit->chi_square;
+    const imk_magnetometer *problem = fit->problem;
+    parts found = {{fit->chi_square, 0.0}, {degrees, 0.0}, 0.0};
+    double seconds = 0.0;
+    for (size_t k = 0; k < problem->count; k++) {
+        const imk_magnetometer_observation *o = &problem->observation[k];
+        imki_mag_equations e;
+        imki_mag_equate(fit, o, &e);
+        if (o->weight == 0.0 || e.count < 2)
+            continue;
+        /* r2 less its regression on r1 has the variance 1/information[1][1]. */
+        const double slope = e.information[1][0] / e.information[1][1];
+        const double rest = e.residual[1] + slope * e.residual[0];
+        double gradient[IMKI_MAG_ALL];
+        for (int p = 0; p < IMKI_MAG_ALL; p++)
+            gradient[p] = e.gradient[1][p] + slope * e.gradient[0][p];
+        found.chi_square[1] += rest * rest * e.information[1][1];
+        found.degrees[1] += 1.0 - e.information[1][1] * spread_of(fit, gradient, gradient);
+        found.vertical += fmin(e.up_variance * e.information[1][1], 1.0);
+        seconds += 1.0;
+    }
+    found.chi_square[0] -= found.chi_square[1];
+    found.degrees[0] -= found.degrees[1];
+    found.vertical /= fmax(seconds, 1.0);
+    return found;
+}
+
+/* The readings scatter by `ratio` of the variance used. */
+static void scale_readings(imki_mag_fit *fit, double ratio, bool places)
+{
+    if (places) {
+        const double variance = mean_variance(fit->problem) + fit->added * fit->added;
+        fit->added = sqrt(fmax(fit->added * fit->added + (ratio - 1.0) * variance, 0.0));
+    } else {
+        fit->factor *= sqrt(ratio);
+    }
+}
+
+/* Sigmas by the residuals: a factor for all, or if the vertical is the larger error, one for the
+ * readings by |u| and one for the vertical by the dip. */
+static bool find_factor(imki_mag_fit *fit, imk_magnetometer_result *made)
+{
+    enum { LEAST = 3 }; /* degrees of freedom of a factor */
+    const double degrees = made->degrees_of_freedom;
+    const parts stated = parts_of(fit, degrees);
+    const bool apart =
+        stated.vertical > 0.5 && stated.degrees[0] >= LEAST && stated.degrees[1] >= LEAST;
+    const double first =
+        apart ? stated.chi_square[0] / stated.degrees[0] : fit->chi_square / degrees;
+    made->chi_square = fit->chi_square;
+    made->freedom = apart ? fmin(stated.degrees[0], stated.degrees[1]) : degrees;
     for (int pass = 0; pass < PASSES && degrees > 0.0; pass++) {
-        const double ratio = fit->chi_square / degrees;
-        if (*stated / degrees > disturbed && fit->factor == 1.0) {
-            const double variance = mean_variance(fit->problem) + fit->added * fit->added;
-            const double more = fit->added * fit->added + (ratio - 1.0) * variance;
-            fit->added = sqrt(fmax(more, 0.0));
-        } else {
-            fit->factor *= sqrt(ratio);
-        }
-        if (!converge(fit, STEPS, iterations))
+        const parts now = parts_of(fit, degrees);
+        const double all = fit->chi_square / degrees;
+        const double dip = now.chi_square[1] / now.degrees[1];
+        scale_readings(fit, apart ? now.chi_square[0] / now.degrees[0] : all, first > disturbed);
+        if (apart)
+            fit->up_factor *= sqrt(fmax(1.0 + (dip - 1.0) / fmax(now.vertical, 0.3), 0.1));
+        else if (!(first > disturbed))
+            fit->up_factor = fit->factor;
+        if (!converge(fit, STEPS, &made->iterations))
             return false;
-        if (fabs(ratio - 1.0) < 1e-6)
+        if (fabs(all - 1.0) < 1e-6)
             break;
     }
     return true;
@@ -335,7 +394,7 @@ static imk_status not_determined(imki_mag_fit *fit, imk_magnetometer_result *res
                                  imk_error *error)
 {
     imki_mag_start(fit);
-    fit->factor = 1.0;
+    fit->factor = fit->up_factor = 1.0;
     fit->added = 0.0;
     imki_mag_coverage(fit, result);
     return imk_error_set(error, IMK_ERROR_SINGULAR, "attitude", NULL,
@@ -362,11 +421,11 @@ static imk_status solve(imki_mag_fit *fit, imk_magnetometer_result *made, double
     made->degrees_of_freedom = (double)used - (double)fit->free;
     if (fit->field_known && fit->problem->field_sigma > 0.0)
         made->degrees_of_freedom += 1.0;
-    if (!find_factor(fit, made->degrees_of_freedom, &made->chi_square, &made->iterations))
+    if (!find_factor(fit, made))
         return not_determined(fit, made, error);
     (void)assess(fit);
     made->serial = fit->problem->series ? serial_of(fit->problem, scratch) : 1.0;
-    made->freedom = fmax(1.0, made->degrees_of_freedom / made->serial);
+    made->freedom = fmax(1.0, made->freedom / made->serial);
     fill_result(fit, made);
     imki_mag_coverage(fit, made);
     return IMK_OK;
@@ -378,7 +437,7 @@ imk_status imk_magnetometer_solve(const imk_magnetometer *problem, imk_magnetome
     imk_status status = check(problem, result, scratch, error);
     if (status != IMK_OK)
         return status;
-    imki_mag_fit fit = {.problem = problem, .factor = 1.0};
+    imki_mag_fit fit = {.problem = problem, .factor = 1.0, .up_factor = 1.0};
     imk_magnetometer used = *problem;
     if (used.frame == IMK_FRAME_REFERENCE)
         used.frame = IMK_FRAME_SYMMETRIC;

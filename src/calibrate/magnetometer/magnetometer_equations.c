@@ -183,7 +183,9 @@ void imki_mag_equate(const imki_mag_fit *fit, const imk_magnetometer_observation
         covariance[2] += p[1][i] * p[1][i] * v[i];
         e->up_gradient[i] = y[i] - up * o->up[i];
     }
-    covariance[2] += o->up_sigma * o->up_sigma * imki_dot3(e->up_gradient, e->up_gradient);
+    e->up_variance = fit->up_factor * fit->up_factor * o->up_sigma * o->up_sigma *
+                     imki_dot3(e->up_gradient, e->up_gradient);
+    covariance[2] += e->up_variance;
     invert_covariance(e, covariance);
     for (int i = 0; i < 3; i++) {
         e->adjusted[i] = o->reading[i];

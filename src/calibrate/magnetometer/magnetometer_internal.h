@@ -23,6 +23,7 @@ typedef struct imki_mag_fit {
     imk_matrix3 inverse; /* of A */
     bool rough; /* outliers are still there: derivatives at the readings, as of least squares */
     double factor, added; /* sigma used: sqrt((factor sigma)^2 + added^2) */
+    double up_factor;     /* of up_sigma */
     /* dx = map d(independent parameters) */
     size_t free;
     double map[IMKI_MAG_ALL][IMKI_MAG_ALL];
@@ -49,6 +50,7 @@ typedef struct imki_mag_equations {
     double residual[2], information[2][2]; /* inverse of their covariance */
     double gradient[2][IMKI_MAG_ALL];
     double up_gradient[3]; /* of the second residual by `up` */
+    double up_variance;    /* its part of the variance of the second residual */
     double adjusted[3];    /* the reading nearest to the observed one that fits */
 } imki_mag_equations;
 void imki_mag_equate(const imki_mag_fit *fit, const imk_magnetometer_observation *o,
