@@ -313,6 +313,9 @@ static const struct message {
                  "attitudes with the field of the Earth along {name} of the unit, and stay longer "
                  "in each. It points north, and steeply down in the north of the Earth, up in the "
                  "south"},
+    {"mag_shape",
+     "the magnetometer reads {0.2g} times as much in one direction as in another, which no "
+     "soft iron does: its columns have different units, or one of them is not its own"},
     {"mag_axes", "the axes of the magnetometer are not those of the accelerometers, so it is not "
                  "calibrated. Either {name}, in a field that points {0.0f} deg {1?}down{1!}up{?}; "
                  "or {other}, in a field that points {0.0f} deg {1?}up{1!}down{?}. What decides is "

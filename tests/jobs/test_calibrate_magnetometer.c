@@ -234,6 +234,16 @@ static void test_axes(void **state)
     assert_int_equal(found->findings.count, 0);
     assert_true(found->model.mag.present);
     imk_calibrate_log_free(found);
+    /* So is more than half of one, but nearer to other axes: it is said. */
+    fill();
+    for (int row = 0; row < ROWS; row++) {
+        const double x = column[3][row], y = column[4][row];
+        column[3][row] = 0.6428 * x + 0.766 * y;
+        column[4][row] = 0.6428 * y - 0.766 * x;
+    }
+    CHECK_OK(run(IMK_PROCEDURE_MULTIPOSITION, &settings, 0, "T"));
+    assert_int_equal(found->findings.count, 1);
+    check_told("mag_mounting", IMK_FINDING_WARNING, true);
 }
 
 static void test_units(void **state)
@@ -249,6 +259,11 @@ static void test_units(void **state)
             column[k][row] *= 5e4; /* 2.4 T */
     CHECK_OK(run(IMK_PROCEDURE_MULTIPOSITION, &settings, 0, "T"));
     check_told("mag_field", IMK_FINDING_WARNING, true);
+    fill();
+    for (int row = 0; row < ROWS; row++)
+        column[5][row] *= 0.1; /* one axis in another unit */
+    CHECK_OK(run(IMK_PROCEDURE_MULTIPOSITION, &settings, 0, "T"));
+    check_told("mag_shape", IMK_FINDING_WARNING, false);
     CHECK_OK(run(IMK_PROCEDURE_MULTIPOSITION, &settings, 0, "count"));
     check_told("mag_counts_left", IMK_FINDING_WARNING, false);
     CHECK_STATUS(run(IMK_PROCEDURE_MAGNETOMETER, &settings, 3, "count"), IMK_ERROR_UNIT_MISSING);

@@ -4,8 +4,10 @@
  * is then given without it. */
 #include "calibrate_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "jobs/job_internal.h"
 
+#include "imukit/linear_algebra.h"
 #include "imukit/simulate.h"
 
 #include <math.h>
@@ -122,6 +124,21 @@ static bool check_coverage(imk_calibrate_log *b, const imk_magnetometer_result *
     return worst <= useless;
 }
 
+/* Soft iron and scale factors make some tens of per cent between directions. */
+static bool check_shape(imk_calibrate_log *b, const imk_magnetometer_result *r, imk_error *error)
+{
+    static const double most = 3;
+    const double *a = r->value + IMK_MAGNETOMETER_RESPONSE;
+    double square[9], value[3];
+    for (int i = 0; i < 9; i++)
+        square[i] = imki_dot3(a + (ptrdiff_t)(i / 3) * 3, a + (ptrdiff_t)(i % 3) * 3);
+    if (imk_symmetric_eigen(3, square, value, NULL) != IMK_OK || value[2] < most * most * value[0])
+        return true;
+    (void)imki_magnetometer_useless(b, IMK_ERROR_CONFLICT, "mag_shape", NULL,
+                                    IMKI_NUMBERS(sqrt(value[2] / value[0])), error);
+    return false;
+}
+
 /* ---- axes ------------------------------------------------------------------------------------ */
 
 /* How a log with these axes is mended: what becomes x, y, z. */
@@ -223,13 +240,14 @@ static const char *likely_unit(const imk_calibrate_log *b, double field)
 
 static void check_field(imk_calibrate_log *b, const imk_magnetometer_result *r)
 {
-    double scale = 0;
-    for (int i = 0; i < 3; i++)
-        scale += r->value[IMK_MAGNETOMETER_RESPONSE + 4 * i] / 3;
+    const double *a = r->value + IMK_MAGNETOMETER_RESPONSE;
+    double cross[3];
+    imki_cross3(a + 3, a + 6, cross);
+    const double scale = cbrt(fabs(imki_dot3(a, cross)));
     /* as the readings have it */
-    const double field = r->value[IMK_MAGNETOMETER_FIELD] * fabs(scale);
+    const double field = r->value[IMK_MAGNETOMETER_FIELD] * scale;
     const char *unit = likely_unit(b, field);
-    if (r->field_known && fabs(fabs(scale) - 1) > scale_off)
+    if (r->field_known && fabs(scale - 1) > scale_off)
         imki_find(&b->findings, IMK_FINDING_WARNING, "mag_scale", NULL,
                   IMKI_NUMBERS(1e6 * field, 1e6 * r->value[IMK_MAGNETOMETER_FIELD]));
     else if (!r->field_known &&
@@ -269,7 +287,7 @@ static void check_residuals(imk_calibrate_log *b, const imk_magnetometer_result 
 bool imki_magnetometer_result(imk_calibrate_log *b, imk_error *error)
 {
     const imk_magnetometer_result *r = b->mag;
-    if (!check_coverage(b, r, error) || !check_order(b, r, error))
+    if (!check_coverage(b, r, error) || !check_shape(b, r, error) || !check_order(b, r, error))
         return false;
     check_field(b, r);
     check_dip(b, r);
