@@ -173,7 +173,7 @@ int main(int argc, char **argv)
         if (only < sizeof plans && only != i)
             continue;
         /* A minute of single readings takes as long as hundred rests. */
-        const int runs = plans[i].bench.rests > 0 ? benches : (benches + 3) / 4;
+        const int runs = plans[i].bench.rests > 0 ? benches : (benches + 1) / 2;
         for (int n = 0; n < runs; n++)
             if (mag_bench_run(b, &plans[i].bench, seed, (uint32_t)n) == IMK_OK)
                 count(b, &c);
