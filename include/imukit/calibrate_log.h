@@ -88,8 +88,8 @@ typedef struct imk_calibrate_log_settings {
     /* magnetometers */
     double field, field_sigma; /**< of the Earth at the place, with its 1 sigma [T]; default NaN:
                                   not known, and the scale of the magnetometers is a convention */
-    double dip;    /**< of this field, positive downwards [rad]: tells the signs of a magnetometer's
-                      axes;    default NaN: by the place, if that is known */
+    double dip; /**< of this field, positive downwards [rad]; it tells the signs of a magnetometer's
+                   axes. Default NaN: by the place, if that is known */
     bool activity; /**< keep for each sample whether it is at rest; default false */
 } imk_calibrate_log_settings;
 
