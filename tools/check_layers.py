@@ -37,7 +37,7 @@ PUBLIC = {
     "identify": "allan allan_fit allan_gaps allan_stream identify identify_joint identify_plan "
                 "identify_record noise_map record_screen spectrum",
     "compensate": "compensate firmware",
-    "calibrate": "axes_mending calibration calibration_plan evaluate ferraris procedure "
+    "calibrate": "axes_mending calibration calibration_plan evaluate ferraris magnetometer procedure "
                  "reference_alignment repeatability static_detection test_record thermal",
     "navigate": "alignment drift navigate zero_velocity",
     "physics": "instrument laboratory",  # and of each folder of src/physics

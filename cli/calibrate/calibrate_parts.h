@@ -15,6 +15,7 @@ typedef struct calibrate_options {
     imk_calibrate_log_settings settings; /* what options set as it is */
     const char *procedure, *position, *with, *without;
     const char *sensitivity[2], *zero_offset[2], *range[2]; /* gyro, accel */
+    const char *field, *dip;                                /* of the Earth */
     const char *motion, *motion_offset, *want;
     const char *model, *into, *name, *output, *plot, *report;
     double soak; /* NaN: not given */

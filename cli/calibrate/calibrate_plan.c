@@ -143,6 +143,10 @@ static int set_up(plan *p)
     if (b->settings.repeatability)
         code = command_misused("--plan: repeatability needs no programme; record as many power "
                                "cycles as you can, ten or more");
+    if (code < 0 && b->found->record[0].procedure == IMK_PROCEDURE_MAGNETOMETER)
+        code = command_misused("--plan: magnetometer needs no programme; turn the unit slowly by "
+                               "hand for a minute, so that each of its axes points along the field "
+                               "and against it");
     if (code < 0)
         code = command_model(b->path[0], &b->found->calibration->model, &unused);
     imk_document_free(unused);

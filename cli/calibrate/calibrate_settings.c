@@ -46,6 +46,37 @@ static int take_counts(session *b)
     return code;
 }
 
+/* "48.1 +- 0.2 uT": a number with its 1 sigma, or exact. */
+static int parse_known(const char *option_name, const char *text, const char *unit,
+                       const char *sample, double *value, double *sigma)
+{
+    size_t count = 0;
+    if (!text)
+        return -1;
+    if (imk_quantity_parse(text, text + strlen(text), imk_unit_of(unit).dimension, 1, value, sigma,
+                           &count, NULL, NULL) == IMK_OK &&
+        count == 1)
+        return -1;
+    return command_misused("--%s \"%s\": expected a number and a unit, such as \"%s\"", option_name,
+                           text, sample);
+}
+
+/* The field of the Earth. */
+static int take_field(session *b)
+{
+    const calibrate_options *o = b->options;
+    imk_calibrate_log_settings *s = &b->settings;
+    double sigma;
+    int code = parse_known("field", o->field, "T", "48.1 +- 0.2 uT", &s->field, &s->field_sigma);
+    if (code < 0)
+        code = parse_known("dip", o->dip, "rad", "64 deg", &s->dip, &sigma);
+    if (code < 0 && o->field && !(s->field > 0 && s->field < 1e-3))
+        code = command_misused("--field \"%s\": the field of the Earth is 22 to 67 uT", o->field);
+    if (code < 0 && o->dip && !(fabs(s->dip) <= 1.5707963267948966))
+        code = command_misused("--dip \"%s\": expected -90 deg to 90 deg", o->dip);
+    return code;
+}
+
 /* --with and --without as bits. */
 static int take_switches(const char *option_name, const char *list, unsigned *terms)
 {
@@ -213,11 +244,14 @@ static int check_used(const session *b)
 {
     const calibrate_options *o = b->options;
     bool referenced = false, turned = false, turns = false, thermal = false;
+    bool magnetic = false, compass = false;
     for (size_t k = 0; k < b->count && !b->settings.repeatability; k++) {
         const imk_procedure p = b->procedure[k];
         turns = turns || p == IMK_PROCEDURE_TURNS;
         turned = turned || turns || p == IMK_PROCEDURE_FERRARIS;
         thermal = thermal || p == IMK_PROCEDURE_THERMAL;
+        compass = compass || p == IMK_PROCEDURE_MAGNETOMETER;
+        magnetic = magnetic || p == IMK_PROCEDURE_MAGNETOMETER || p == IMK_PROCEDURE_MULTIPOSITION;
         referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
                      p == IMK_PROCEDURE_CENTRIFUGE || p == IMK_PROCEDURE_SPIN;
     }
@@ -227,6 +261,12 @@ static int check_used(const session *b)
                                "rate-table, tumble, centrifuge, spin and thermal");
     if (o->motion_offset && !o->motion)
         return command_misused("--motion-offset is used with --motion only: add --motion");
+    if (o->settings.estimate && compass)
+        return command_misused("--estimate names terms of gyros and accelerometers; --procedure "
+                               "magnetometer always estimates the same: leave one of them out");
+    if ((o->field || o->dip) && !magnetic)
+        return command_misused(none, o->field ? "field" : "dip", o->procedure,
+                               "multiposition and magnetometer");
     if (o->settings.table_axis >= 0 && !referenced)
         return command_misused(none, "table-axis", o->procedure, "rate-table");
     if (!isnan(o->settings.turn_angle) && !turned)
@@ -294,6 +334,8 @@ int session_choose(session *b)
         code = check_closed_form(b);
     if (code < 0)
         code = take_counts(b);
+    if (code < 0)
+        code = take_field(b);
     if (code < 0 && command_unless_memory(imk_calibrate_log_create(
                         b->count, b->procedure, &b->settings, NULL, &b->found, &error)) != IMK_OK)
         code = refused(&error);

@@ -11,8 +11,9 @@
 static const option result_options[] = {
     {"procedure", OPTION_TEXT, AT(procedure), .letter = 'p', .value = "NAME",
      .help = "procedure of the test: multiposition, sixposition, ferraris, rate-table, tumble, "
-             "centrifuge, spin, thermal, turns or repeatability; one for all logs, or one for each "
-             "log, separated by commas"},
+             "centrifuge, spin, thermal, turns, magnetometer or repeatability; one for all logs, "
+             "or one "
+             "for each log, separated by commas"},
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "MODEL",
      .help = "write the model here (.yaml or .json)"},
     {"into", OPTION_INTO, AT(into), .value = "MODEL",
@@ -46,6 +47,13 @@ static const option test_options[] = {
              "such as \"48.1 deg, 11.6 deg, 520 m\""},
     {"gravity", OPTION_QUANTITY, AT(settings.gravity), .letter = 'g', .value = "G", .unit = "m/s^2",
      .help = "local gravity, if it is known better than from the position, such as 9.80743m/s^2"},
+    {"field", OPTION_TEXT, AT(field), .value = "FIELD",
+     .help = "strength of the Earth's magnetic field at the place, with 1 sigma, such as \"48.1 +- "
+             "0.2 uT\"; sets the scale of the magnetometer"},
+    {"dip", OPTION_TEXT, AT(dip), .value = "ANGLE",
+     .help =
+         "dip of this field below the horizontal, negative if it points up, such as \"64 deg\"; "
+         "tells signs of the magnetometer's axes apart, as --position does"},
     {"no-earth", OPTION_FLAG, AT(settings.no_earth),
      .help = "the references do not contain the Earth's rotation; the gyro bias then includes it"},
     {"frame", OPTION_CHOICE, AT(settings.frame), .value = "FRAME",
@@ -223,7 +231,10 @@ const verb calibrate_verb = {
         "rates or forces that acted on the unit: columns reference_rate_x [deg/s] …, "
         "reference_force_x [g] … in the log (mean over the sample, in inertial space, gravity "
         "included), table_rate [deg/s] with --table-axis, or the programme of the table as a "
-        "motion file. thermal needs a column temperature. repeatability compares power cycles, "
+        "motion file. thermal needs a column temperature. magnetometer needs any rotation by hand; "
+        "with "
+        "multiposition, a magnetometer beside the accelerometers is calibrated and aligned to "
+        "them. repeatability compares power cycles, "
         "each given as a log, a section of a log or a MODEL; models compare the scale factors "
         "too.\n\n"
         "docs/calibrate.md says how to do each test.",

@@ -9,6 +9,7 @@
 #include "imukit/earth.h"
 #include "imukit/ferraris.h"
 #include "imukit/job.h"
+#include "imukit/magnetometer.h"
 #include "imukit/motion.h"
 #include "imukit/procedure.h"
 #include "imukit/record.h"
@@ -72,8 +73,8 @@ typedef struct imk_calibrate_log_settings {
      *  Without these the scatter of the residuals is the noise. The time is not looked at: the rate
      *  of an array source may be 1. Default false */
     bool pose_means;
-    double placement;    /**< 1 sigma of the attitude of a face on the plate; of angle and axis of a
-                            turn [rad] */
+    double placement; /**< 1 sigma of the attitude of a face on the plate; of angle and axis of a
+                         turn [rad] */
     double g_sensitivity_sigma; /**< 1 sigma of a g-sensitivity that is not estimated [rad/s per
                                    m/s^2] */
     double mounting;     /**< 1 sigma of the attitude of the unit on its fixture or table [rad] */
@@ -94,7 +95,12 @@ typedef struct imk_calibrate_log_settings {
     bool find_offset;         /**< find the offset of each record instead; default false */
     int table_axis; /**< axis of the unit about which a column table_rate turns it, 0 to 2;
                          default -1: not known */
-    bool activity;  /**< keep for each sample whether it is at rest; default false */
+    /* magnetometers */
+    double field, field_sigma; /**< of the Earth at the place, with its 1 sigma [T]; default NaN:
+                                  not known, and the scale of the magnetometers is a convention */
+    double dip; /**< of this field, positive downwards [rad]; it tells the signs of a magnetometer's
+                   axes. Default NaN: by the place, if that is known */
+    bool activity; /**< keep for each sample whether it is at rest; default false */
 } imk_calibrate_log_settings;
 
 /** The defaults named above. */
@@ -127,6 +133,8 @@ typedef struct imk_calibrate_record {
     size_t diagnostic_count;
     imk_diagnostic_finding diagnostic[IMK_CALIBRATE_DIAGNOSTICS_MAX];
     imk_thermal_findings *thermal; /**< of the procedure "thermal", else NULL */
+    bool mag_counts;               /**< the magnetometer is in counts, and is not calibrated */
+    imk_magnetometer_record mag;   /**< its magnetometer, if record.mag is there */
 } imk_calibrate_record;
 
 /** A calibration: its records and its result. */
@@ -143,6 +151,8 @@ typedef struct imk_calibrate_log {
     size_t run_count;
     size_t diagnostic_count;
     imk_diagnostic_finding diagnostic[IMK_CALIBRATE_DIAGNOSTICS_MAX]; /**< of the solution */
+    imk_magnetometer *magnetometer; /**< the problem; NULL: no record has one to calibrate */
+    imk_magnetometer_result *mag;   /**< its solution; NULL: there is none that can be used */
     imk_model model; /**< the result, to be written; its name is that of the model known before */
     imk_findings findings;
     size_t failed; /**< number of the record that could not be used; count: all of them together */
@@ -176,8 +186,9 @@ IMK_API imk_status imk_calibrate_logs(size_t count, const imk_calibrate_input *i
  *  @param job        NULL: one thread, memory of the C library, no progress
  *  @return IMK_ERROR_RANGE ("count": 0, or more than IMK_TEST_RECORDS_MAX; "procedure"; "gravity":
  *          value), IMK_ERROR_CONFLICT ("frame": gravity alone does not tell the reference frame;
- *          "closed_form": not one ferraris record; "estimate": with or without beside it;
- *          "pose_means": no record is of a procedure that takes them), _MEMORY */
+ *          "closed_form": not one ferraris record; "estimate": with or without beside it, or a
+ *          record of the procedure magnetometer; "pose_means": no record is of a procedure that
+ *          takes them), _MEMORY */
 IMK_API imk_status imk_calibrate_log_create(size_t count, const imk_procedure *procedure,
                                             const imk_calibrate_log_settings *settings,
                                             const imk_job *job, imk_calibrate_log **session,

@@ -39,6 +39,7 @@
 #include "imukit/identify_record.h"
 #include "imukit/least_squares.h"
 #include "imukit/linear_algebra.h"
+#include "imukit/magnetometer.h"
 #include "imukit/model.h"
 #include "imukit/model_parameter.h"
 #include "imukit/motion.h"

@@ -192,7 +192,7 @@ typedef enum imk_model_term {
 
 /** Place of one number of a model; see model_parameter.h. */
 typedef struct imk_model_parameter {
-    uint8_t sensor; /**< 0 gyro, 1 accelerometer */
+    uint8_t sensor; /**< IMK_GYRO, IMK_ACCEL or IMK_MAG */
     uint8_t term;   /**< imk_model_term */
     uint8_t axis;   /**< 0 … IMK_AXES_MAX - 1 */
     uint8_t element;

@@ -14,7 +14,9 @@
  *      centrifuge     known forces of several g
  *      spin           fast rotation: places of the accelerometers (size effect)
  *      thermal        bias, and scale factor, against temperature
- *      turns          gyros alone: turns by known angles about their axes, between rests */
+ *      turns          gyros alone: turns by known angles about their axes, between rests
+ *      magnetometer   any rotation by hand: hard and soft iron of a magnetometer alone, by
+ *                     magnetometer.h; imk_procedure_observe() refuses it */
 #ifndef IMUKIT_PROCEDURE_H
 #define IMUKIT_PROCEDURE_H
 
@@ -33,6 +35,7 @@ typedef enum imk_procedure {
     IMK_PROCEDURE_SPIN,
     IMK_PROCEDURE_THERMAL,
     IMK_PROCEDURE_TURNS,
+    IMK_PROCEDURE_MAGNETOMETER,
     IMK_PROCEDURES
 } imk_procedure;
 /** "multiposition", "rate-table" …; NULL beyond the last. */

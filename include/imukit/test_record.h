@@ -34,6 +34,7 @@ typedef struct imk_test_record {
     bool means;
     const double *mean_sigma[2][IMK_AXES_MAX]; /**< with `means`: 1 sigma of each mean, as the
                                                     readings; > 0 */
+    const double *mag[3]; /**< magnetometer [T], NaN: missing; all NULL: the log has none */
 } imk_test_record;
 
 IMK_END_C

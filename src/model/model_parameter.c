@@ -15,7 +15,7 @@ static const char *const axis_letters[3] = {"x", "y", "z"};
 
 static bool is_term(int sensor, int term)
 {
-    return sensor >= 0 && sensor < 2 && term >= 0 && term < IMK_MODEL_TERMS &&
+    return sensor >= 0 && sensor < IMK_KINDS && term >= 0 && term < IMK_MODEL_TERMS &&
            imki_term_field(term)->path[sensor];
 }
 
@@ -141,7 +141,7 @@ static bool parse_place(imki_form form, const char *text, imk_model_parameter *p
 
 imk_status imk_model_parameter_parse(const char *name, imk_model_parameter *parameter)
 {
-    for (int sensor = 0; name && sensor < 2; sensor++) {
+    for (int sensor = 0; name && sensor < IMK_KINDS; sensor++) {
         const char *path = behind(name, imki_kind_names[sensor]);
         for (int term = 0; path && term < IMK_MODEL_TERMS; term++) {
             const char *own = imki_term_field(term)->path[sensor];

@@ -321,6 +321,83 @@ static const struct message {
      "{record} does not say how well the {name} means are known, and {0} readings leave {1.1f} "
      "degrees of freedom to see it by their scatter; {2} are needed: add columns {other}_x_std and "
      "so on with samples, or more poses, also of attitudes that are there"},
+    {"mag_counts", "the magnetometer columns of {record} have no unit, or are in counts: state it "
+                   "in the header, such as mag_x [uT]"},
+    {"no_magnetometer", "{record} has {0} of the columns mag_x, mag_y, mag_z, and --procedure "
+                        "magnetometer needs all three; name them with --columns"},
+    {"magnetometer_only", "{record} has a magnetometer, but no gyro and no accelerometer; "
+                          "imukit calibrate --procedure magnetometer calibrates it"},
+    /* magnetometer_findings.c, calibrate_magnetometer.c */
+    {"mag_stuck", "{other}: {name} never changes its reading, so the magnetometer is not "
+                  "calibrated: the axis is dead, or the column holds something else"},
+    {"mag_saturated", "{other}: {name} stays at {0.4g} uT for 20 updates or more, while it changes "
+                      "elsewhere, so the magnetometer is not calibrated: this is the end of its "
+                      "range; keep away from magnets, or choose a larger range"},
+    {"mag_held", "{name}: {0} of {1} magnetometer rows are new, the others repeat the row before: "
+                 "the sensor is slower than the log, and repeated rows count once"},
+    {"mag_not_used", "the magnetometer is not calibrated: only the procedures multiposition and "
+                     "magnetometer do so"},
+    {"mag_counts_left",
+     "the magnetometer is in counts and is not calibrated: state the unit of its "
+     "columns in the header, such as mag_x [uT]"},
+    {"mag_no_use_of_field", "--field and --dip are for magnetometers, and none is calibrated here"},
+    {"mag_not_named", "the magnetometer is left as it is, because --estimate names other terms"},
+    {"mag_many", "the magnetometer is left out: {0} other parameters are estimated, and there is "
+                 "room for {1} in all; leave some out with --estimate or --without"},
+    {"mag_few", "{0} attitudes are too few to calibrate the magnetometer: use 20 or more"},
+    {"mag_coverage",
+     "the attitudes do not determine hard and soft iron of the magnetometer: the "
+     "directions of the field are too much alike (spread {0.2g}, 0.33 at best); "
+     "add attitudes with the field of the Earth along {name} of the unit. It points "
+     "north, and steeply down in the north of the Earth, up in the south"},
+    {"mag_weak", "hard or soft iron of the magnetometer is known to {0.2g} % of the field only (1 "
+                 "sigma); the directions of the field have a spread of {1.2g}, 0.33 at best. Add "
+                 "attitudes with the field of the Earth along {name} of the unit, and stay longer "
+                 "in each. It points north, and steeply down in the north of the Earth, up in the "
+                 "south"},
+    {"mag_shape",
+     "the magnetometer reads {0.2g} times as much in one direction as in another, which no "
+     "soft iron does: its columns have different units, or one of them is not its own"},
+    {"mag_axes", "the axes of the magnetometer are not those of the accelerometers, so it is not "
+                 "calibrated. Either {name}, in a field that points {0.0f} deg {1?}down{1!}up{?}; "
+                 "or {other}, in a field that points {0.0f} deg {1?}up{1!}down{?}. What decides is "
+                 "where the field points: down in the north of the Earth, up in the south; give "
+                 "--position or --dip. If the magnetometer is right, the axes of all other sensors "
+                 "are wrong in the same way. Correct the columns (names: in the header or with "
+                 "--columns)"},
+    {"mag_axes_known", "the axes of the magnetometer are not those of the accelerometers, so it is "
+                       "not calibrated: {name}, in a field that points {0.0f} deg "
+                       "{1?}down{1!}up{?}, as at this place, explains the log. If the magnetometer "
+                       "is right, the axes of all other sensors are wrong in the same way. Correct "
+                       "the columns (names: in the header or with --columns)"},
+    {"mag_inverted",
+     "the field points {0.0f} deg {1?}down{1!}up{?} by the signs of magnetometer and "
+     "accelerometers, and the other way at this place, so the magnetometer is not "
+     "calibrated: either all three axes of the magnetometer are inverted, or all "
+     "accelerometers (an accelerometer whose axis points up reads +9.8 m/s^2 at "
+     "rest)"},
+    {"mag_mounting", "the magnetometer is turned by {0.3g} deg against the nearest order of axes "
+                     "({name}); the model describes it as it is. Check its axes"},
+    {"mag_scale",
+     "the magnetometer reads a field of {0.4g} uT where --field says {1.4g} uT: the unit "
+     "of the columns or of --field is wrong, or steel is near"},
+    {"mag_field",
+     "the field is {0.4g} uT by the magnetometer, but that of the Earth is 22 to 67 uT: "
+     "the unit of the columns is wrong, or a magnet or steel is near"},
+    {"mag_field_unit", "the field is {0.4g} uT by the magnetometer, but that of the Earth is 22 to "
+                       "67 uT: the columns look like {name}; correct the header"},
+    {"mag_dip",
+     "the dip of the field is {0.4g} deg by the log and {1.4g} deg by --dip: steel is near, "
+     "or one of the two is wrong"},
+    {"mag_disturbed", "the field is not the same in all attitudes: it differs by {0.3g} uT rms "
+                      "({2.2g} % of it), {1.3g} times what the noise explains. Steel, a motor or a "
+                      "current is near, or turns with the unit only in part; turn the unit about "
+                      "one point, a metre or more from the ground, from furniture and from walls. "
+                      "The intervals hold only if the excess is random"},
+    {"mag_outliers", "{0} of {1} means of the magnetometer do not fit the others and are left out: "
+                     "the field was another one there; turn the unit about one point, away from "
+                     "steel"},
+    {"mag_left_out", "{0} of {1} means of the magnetometer do not fit the others and are left out"},
     /* calibrate_exposure.c */
     {"calibrate:no_unit",
      "{record}: {name} has no unit; write it into the header, such as {name} [{other}]"},
@@ -399,7 +476,10 @@ static const struct message {
                  "of attitude looks like a change of accelerometer bias; keep the attitude fixed, "
                  "or state how accurately the unit is put back with --placement 0.1deg"},
     {"temperature_left_out", "{name}: the other effects of temperature are left out: {0t}"},
-    /* compensate_columns.c */
+    /* compensate_magnetometer.c, compensate_columns.c */
+    {"magnetometer_left", "the magnetometer is copied as it is: it takes columns mag_x, mag_y and "
+                          "mag_z with a unit, and "
+                          "a model of three axes without a sensitivity"},
     {"no_counts", "{record}: {name}, but {model} describes readings in counts ({0k}.sensitivity)"},
     {"counts", "{record}: {name} is in counts, but {model} does not say what a count is: add "
                "{0k}.sensitivity to it"},

@@ -69,10 +69,49 @@ static void test_missing_axis_is_a_finding(void **state)
     imk_compensate_log_free(log);
 }
 
+/* m = h + A u: u by hand, A = {{1.1, 0.2, 0}, {0, 0.9, 0}, {0, 0, 1}}. */
+static void test_magnetometer(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"time", "mag_x [uT]", "mag_y [uT]", "mag_z [uT]"};
+    static imk_model model;
+    static double column[5][ROWS];
+    double *const out[] = {column[0], column[1], column[2], column[3], column[4]};
+    imk_compensate_log *log;
+    imk_model_default(&model);
+    model.mag = model.accel;
+    model.mag.bias.fixed.value[0] = 1e-6;
+    model.mag.bias.fixed.value[1] = 0.9e-6;
+    model.mag.scale_factor.fixed.value[0] = 0.1;
+    model.mag.scale_factor.fixed.value[1] = -0.1;
+    model.mag.cross_axis.value[0][1] = 0.2;
+    model.mag.noise.white.value[0] = 1e-9;
+    assert_int_equal(run(names, &model, out, &log), IMK_OK);
+    assert_int_equal(log->taken_out.count, 3);
+    assert_string_equal(log->taken_out.key[2], "mag.cross_axis");
+    assert_int_equal(log->left_in.count, 1);
+    /* Readings (1 + i, 0, 0) uT: u_y = -1 uT, u_x = (i + 0.2)/1.1 uT. */
+    for (int i = 0; i < ROWS; i++) {
+        CHECK_CLOSE(column[1][i], (i + 0.2) / 1.1 * 1e-6, 1e-18);
+        CHECK_CLOSE(column[2][i], -1e-6, 1e-18);
+        CHECK_CLOSE(column[3][i], 0, 1e-18);
+    }
+    imk_compensate_log_free(log);
+    /* Two axes are no triad: copied, with a warning. */
+    static const char *const two[] = {"time", "mag_x [uT]", "mag_y [uT]", "gyro_x [rad/s]"};
+    model.gyro.axis_count = 1;
+    model.accel.present = false;
+    assert_int_equal(run(two, &model, out, &log), IMK_OK);
+    assert_string_equal(log->findings.item[0].code, "magnetometer_left");
+    CHECK_CLOSE(column[1][3], 4e-6, 1e-18);
+    imk_compensate_log_free(log);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bias_is_taken_out),
+        cmocka_unit_test(test_magnetometer),
         cmocka_unit_test(test_missing_axis_is_a_finding),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

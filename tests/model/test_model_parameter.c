@@ -116,6 +116,8 @@ static void names_are_those_of_the_model_file(void **state)
         {"gyro.g2_sensitivity.x.yz", "rad/s/(m/s^2)^2", {0, IMK_MODEL_G2_SENSITIVITY, 0, 4}},
         {"accel.lever_arm.x.x", "m", {1, IMK_MODEL_LEVER_ARM, 0, 0}},
         {"accel.bias.temperature.x.2", "m/s^2/K^2", {1, IMK_MODEL_BIAS_TEMPERATURE, 0, 1}},
+        {"mag.bias.fixed.y", "T", {2, IMK_MODEL_BIAS, 1, 0}},
+        {"mag.cross_axis.x.z", "1", {2, IMK_MODEL_CROSS_AXIS, 0, 2}},
         {"gyro.scale_factor.temperature.y.5", "1/K^5", {0, IMK_MODEL_SCALE_TEMPERATURE, 1, 4}},
         {"gyro.bias.temperature_rate.7", "rad/s/(K/s)", {0, IMK_MODEL_TEMPERATURE_RATE, 7, 0}},
     };
@@ -147,7 +149,7 @@ static void what_is_no_number_is_refused(void **state)
                                         "accel.g_sensitivity.x.y",
                                         "gyro.lever_arm.x.y",
                                         "gyro.bias.temperature.x.6",
-                                        "mag.bias.fixed.x"};
+                                        "mag.lever_arm.x.y"};
     imk_model_parameter parameter = {3, 3, 3, 3};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         assert_int_equal(imk_model_parameter_parse(names[i], &parameter), IMK_ERROR_NAME_UNKNOWN);
@@ -208,7 +210,7 @@ static void correlation_is_validated(void **state)
     model = correlated();
     model.correlation.parameter[2].element = 0; /* the diagonal */
     check_refused(&model, IMK_ERROR_KEY_UNKNOWN, "correlation.parameters", 2);
-    model.correlation.parameter[2].sensor = 2;
+    model.correlation.parameter[2].sensor = IMK_KINDS;
     check_refused(&model, IMK_ERROR_KEY_UNKNOWN, "correlation.parameters", 2);
     model = correlated();
     model.correlation.parameter[1] = model.correlation.parameter[0];

@@ -95,3 +95,36 @@ if [ -n "$DATA" ]; then
     zcat "$DATA/navigation/laser_gyro_parked_100hz_increments.csv.gz" | sed '12002,$d' >real/parked.csv
     cp "$DATA"/calibration/*.csv.gz "$DATA"/reference/hg4930_36h_adev.csv "$DATA"/navigation/groves_profile_1.csv.gz real
 fi
+
+# ---- a magnetometer beside gyros and accelerometers -------------------------------------------------
+cat >compass.yaml <<'END'
+imukit: 1
+accel: {bias: {fixed: 20 -35 50 mg}, noise: {velocity_random_walk: 0.05 m/s/sqrt(h)}}
+mag:
+  bias: {fixed: 12 -8 30 uT}
+  scale_factor: {fixed: 2 -3 1 %}
+  cross_axis: 1 0.5 -2 0.3 0.1 0.7 %
+  noise: {density: one-sided, white_noise: 40 nT/sqrt(Hz)}
+END
+$IMUKIT calibrate --plan unit.yaml -p multiposition --want "accel.scale_factor 100 ppm" -o compass_poses.yaml >compass_plan.txt
+$IMUKIT simulate compass.yaml --motion compass_poses.yaml --rate 50Hz --duration 120s --seed 1 --field "20 1 43 uT" --decimals 6 -o compass.csv
+$IMUKIT convert compass.csv compass_alone.csv --select time,mag_x,mag_y,mag_z
+mag() { # NAME PROGRAM: of columns 5 to 7 of compass.csv
+    edit compass.csv "mag_$1.csv" "NR > 1 { $2 } { print }"
+}
+mag exchanged 'm = $5; $5 = $6; $6 = m; $7 = -$7'
+mag inverted '$5 = -$5; $6 = -$6; $7 = -$7'
+mag mounted 'm = $5; $5 = $6 * 0.8 + $7 * 0.6; $6 = $7 * 0.8 - $6 * 0.6; $7 = m'
+mag stuck '$6 = 3'
+mag saturated '$7 = $7 > 50 ? 50 : $7'
+mag held 'if (NR % 5 == 2) { a = $5; b = $6; c = $7 } $5 = a; $6 = b; $7 = c'
+mag disturbed 'k = int($1 / 6); $5 += sin(7 * k * k); $6 += sin(3 * k * k); $7 += sin(k * k)'
+mag steel '$5 += $1 > 30 && $1 < 48 ? 9 : 0'
+mag steel_short '$5 += $1 > 30 && $1 < 42 ? 9 : 0'
+mag flat '$7 = 0.1 * $7'
+mag far '$5 *= 50; $6 *= 50; $7 *= 50'
+edit compass.csv mag_tesla.csv 'NR == 1 { gsub(/uT/, "mT") } { print }'
+edit compass.csv mag_counts.csv 'NR == 1 { gsub(/uT/, "count") } { print }'
+edit compass_alone.csv mag_plane.csv 'NR > 1 { n = sqrt(($2 - 12)^2 + ($3 + 8)^2); $2 = 20 * ($2 - 12) / n; $3 = 20 * ($3 + 8) / n; $4 = 43 + 0.001 * $4 } { print }'
+edit compass_alone.csv mag_few.csv 'NR < 12'
+edit compass_alone.csv mag_two.csv '{ print $1, $2, $3 }'

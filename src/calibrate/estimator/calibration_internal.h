@@ -47,4 +47,8 @@ void imki_turn_predict(const imk_calibration *calibration, const imk_model *mode
  * body axis of its number. */
 bool imki_turn_model(imk_model *model, const double c[3][3]);
 
+/* The rotation C (a rotation and reflection, where r is left-handed) with r = form C, the form that
+ * of a frame. false: r is singular. */
+bool imki_frame_rotation(const double r[3][3], imk_triad_frame frame, double c[3][3]);
+
 #endif

@@ -372,7 +372,8 @@ static imk_status check_settings(const imk_plan_settings *s, const imk_calibrati
         const char *field;
         bool valid;
     } rules[] = {
-        {"procedure", (unsigned)s->procedure < IMK_PROCEDURES},
+        {"procedure",
+         (unsigned)s->procedure < IMK_PROCEDURES && s->procedure != IMK_PROCEDURE_MAGNETOMETER},
         {"rate", s->rate > 0.0 && isfinite(s->rate)},
         {"hold_minimum", s->hold_minimum > 0.0 && s->hold_minimum <= s->hold_maximum},
         {"hold_maximum", s->hold_maximum > 0.0 && isfinite(s->hold_maximum)},

@@ -19,6 +19,20 @@ typedef struct procedure_entry {
     bool means;
 } procedure_entry;
 
+/* A magnetometer has an estimator of its own. */
+static imk_status refuse_observation(const imki_procedure_call *call)
+{
+    return imk_error_set(call->error, IMK_ERROR_ARGUMENT, "procedure", "magnetometer",
+                         "imk_magnetometer_solve()");
+}
+
+static size_t no_workspace(const imk_test_record *record, const imk_procedure_settings *settings)
+{
+    (void)record;
+    (void)settings;
+    return 0;
+}
+
 static const procedure_entry procedures[IMK_PROCEDURES] = {
     {"multiposition", imki_multiposition_observe, imki_multiposition_workspace, true},
     {"sixposition", imki_six_position_observe, imki_six_position_workspace, true},
@@ -29,6 +43,7 @@ static const procedure_entry procedures[IMK_PROCEDURES] = {
     {"spin", imki_reference_observe, imki_reference_workspace, false},
     {"thermal", imki_thermal_observe, imki_thermal_workspace, false},
     {"turns", imki_turns_observe, imki_turns_workspace, false},
+    {"magnetometer", refuse_observation, no_workspace, false},
 };
 
 static bool exists(imk_procedure procedure)

@@ -167,7 +167,7 @@ static bool polar(const double r[3][3], double c[3][3])
     return true;
 }
 
-static bool find_rotation(const double r[3][3], imk_triad_frame frame, double c[3][3])
+bool imki_frame_rotation(const double r[3][3], imk_triad_frame frame, double c[3][3])
 {
     static const int up[3] = {2, 1, 0}, down[3] = {0, 1, 2};
     if (frame == IMK_FRAME_SYMMETRIC)
@@ -256,7 +256,7 @@ imk_status imk_triad_frame_convert(imk_model *model, imk_triad_frame frame, size
         return IMK_ERROR_ARGUMENT;
     for (int i = 0; i < 3; i++)
         response_of(accel, i, r[i]);
-    if (!find_rotation((const double(*)[3])r, frame, c))
+    if (!imki_frame_rotation((const double(*)[3])r, frame, c))
         return IMK_ERROR_SINGULAR;
     const double determinant = c[0][0] * (c[1][1] * c[2][2] - c[1][2] * c[2][1]) -
                                c[0][1] * (c[1][0] * c[2][2] - c[1][2] * c[2][0]) +

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Steps of a calibration, and the names of the two sensors, gyros first. */
+/* Steps of a calibration, and the names of the sensors, gyros first. */
 #ifndef IMUKI_CALIBRATE_INTERNAL_H
 #define IMUKI_CALIBRATE_INTERNAL_H
 
@@ -7,9 +7,9 @@
 
 #include "imukit/calibrate_log.h"
 
-static const char *const imki_sensor_keys[2] = {"gyro", "accel"};
-static const char *const imki_sensor_titles[2] = {"gyro", "accelerometer"};
-static const char *const imki_sensor_units[2] = {"rad/s", "m/s^2"};
+static const char *const imki_sensor_keys[IMK_KINDS] = {"gyro", "accel", "mag"};
+static const char *const imki_sensor_titles[IMK_KINDS] = {"gyro", "accelerometer", "magnetometer"};
+static const char *const imki_sensor_units[IMK_KINDS] = {"rad/s", "m/s^2", "T"};
 
 /* session_record.c: the name of a record without its folders. */
 const char *imki_record_name(const char *path);
@@ -35,6 +35,18 @@ imk_status imki_observe(imk_calibrate_log *b, imk_calibrate_record *log, imk_err
 imk_status imki_solve_once(imk_calibrate_log *b, imk_error *error);
 /* calibrate_solve.c: the solution, where sigmas are not stated with those of the residuals. */
 imk_status imki_solve(imk_calibrate_log *b, imk_error *error);
+/* calibrate_magnetometer.c: the magnetometer of the records, beside the solution of the other
+ * sensors if there is one: what cannot be used then is a warning. */
+imk_status imki_calibrate_magnetometer(imk_calibrate_log *b, imk_error *error);
+/* magnetometer_findings.c: what is told of its records, and of the solution. false: the result is
+ * of no use, and `error` and a failure say why. */
+bool imki_magnetometer_records(imk_calibrate_log *b, imk_error *error);
+bool imki_magnetometer_result(imk_calibrate_log *b, imk_error *error);
+/* Why there is no solution. @return as the record or the calibration goes on */
+imk_status imki_magnetometer_useless(imk_calibrate_log *b, imk_status status, const char *code,
+                                     const char *name, size_t count, const double *numbers,
+                                     imk_error *error);
+void imki_magnetometer_directions(const imk_magnetometer_result *r, char *text, size_t size);
 /* calibrate_closed_form.c: in the place of the last two. */
 imk_status imki_closed_form(imk_calibrate_log *b, imk_error *error);
 /* power_cycles.c: the logs, or the sections of one, are runs. */

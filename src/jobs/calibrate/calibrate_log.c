@@ -84,16 +84,20 @@ imk_status imk_calibrate_log_load(imk_calibrate_log *b, size_t index, const char
 static imk_status calibrate(imk_calibrate_log *b, imk_error *error)
 {
     imk_status status = IMK_OK;
+    bool others = false; /* than magnetometers */
     for (size_t k = 0; status == IMK_OK && k < b->count; k++) {
         b->failed = k;
         status = imki_job_progress(&b->job, "observing", "logs", k, b->count, error);
-        if (status == IMK_OK)
-            status = imki_observe(b, &b->record[k], error);
+        if (status != IMK_OK || b->record[k].procedure == IMK_PROCEDURE_MAGNETOMETER)
+            continue;
+        others = true;
+        status = imki_observe(b, &b->record[k], error);
     }
     if (status != IMK_OK)
         return status;
     b->failed = b->count;
-    return imki_solve(b, error);
+    status = others ? imki_solve(b, error) : IMK_OK;
+    return status == IMK_OK ? imki_calibrate_magnetometer(b, error) : status;
 }
 
 /* @param error  not NULL: observing looks at it */

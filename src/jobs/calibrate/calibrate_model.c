@@ -112,6 +112,13 @@ static void put_interval(imk_evidence *evidence, const imk_interval *interval)
     evidence->interval_count += k == evidence->interval_count;
 }
 
+static imk_evidence *evidence_of(imk_model *model, int sensor)
+{
+    return sensor == IMK_GYRO    ? &model->gyro_evidence
+           : sensor == IMK_ACCEL ? &model->accel_evidence
+                                 : &model->mag_evidence;
+}
+
 /* 95 % interval of a term that was estimated on every axis. */
 static void state_interval(const imk_calibrate_log *b, imk_model *model, int sensor, int term)
 {
@@ -134,7 +141,7 @@ static void state_interval(const imk_calibrate_log *b, imk_model *model, int sen
         interval.lower.value[axis] = rounded(low, digits_for(low, half / 2), unit);
         interval.upper.value[axis] = rounded(high, digits_for(high, half / 2), unit);
     }
-    put_interval(sensor == 0 ? &model->gyro_evidence : &model->accel_evidence, &interval);
+    put_interval(evidence_of(model, sensor), &interval);
 }
 
 static bool estimated(const imk_calibrate_log *b, int sensor)
@@ -142,7 +149,7 @@ static bool estimated(const imk_calibrate_log *b, int sensor)
     for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
         if (b->result->parameter[p].sensor == sensor)
             return true;
-    return b->runs && b->runs->axis_count[sensor] > 0;
+    return b->runs && sensor < IMK_MAG && b->runs->axis_count[sensor] > 0;
 }
 
 /* Put a text behind ", " unless it is the first. */
@@ -182,6 +189,20 @@ static void describe(const imk_calibrate_log *b, imk_evidence *evidence)
              b->calibration->gravity);
 }
 
+/* Behind the names of the logs, which are those of all sensors. */
+static void describe_magnetometer(const imk_calibrate_log *b, imk_evidence *evidence)
+{
+    const imk_magnetometer_result *r = b->mag;
+    char field[80] = "determinant 1 by convention";
+    if (r->field_known)
+        snprintf(field, sizeof field, "field %.5g uT", 1e6 * r->value[IMK_MAGNETOMETER_FIELD]);
+    snprintf(evidence->method, sizeof evidence->method,
+             "imukit %s calibrate: magnetometer, maximum likelihood, %zu means%s; %s", IMK_VERSION,
+             b->magnetometer->count, r->aligned ? ", aligned by the dip" : "", field);
+    snprintf(evidence->frame, sizeof evidence->frame, "%s",
+             imk_triad_frame_name(r->aligned ? b->calibration->frame : b->magnetometer->frame));
+}
+
 /* What temperature does besides the polynomials that were solved for. */
 static void apply_thermal(imk_calibrate_log *b, imk_model *model)
 {
@@ -205,20 +226,21 @@ static void apply_thermal(imk_calibrate_log *b, imk_model *model)
 void imki_calibrate_model(imk_calibrate_log *b)
 {
     imk_model *model = &b->model;
-    imk_evidence *evidence[2] = {&model->gyro_evidence, &model->accel_evidence};
     *model = b->result ? b->result->model : b->calibration->model;
     if (b->runs)
         imk_repeatability_to_model(b->runs, model);
     apply_thermal(b, model);
     for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
         round_parameter(model, b->result->parameter[p]);
-    for (int sensor = 0; sensor < 2; sensor++) {
+    for (int sensor = 0; sensor < IMK_KINDS; sensor++) {
         if (!estimated(b, sensor))
             continue;
         for (int term = 0; b->result && term < IMK_MODEL_TERMS; term++)
             state_interval(b, model, sensor, term);
         if (b->runs)
             round_repeatability(model, sensor);
-        describe(b, evidence[sensor]);
+        describe(b, evidence_of(model, sensor));
     }
+    if (b->mag)
+        describe_magnetometer(b, &model->mag_evidence);
 }

@@ -15,7 +15,8 @@ static imk_status no_memory(imk_error *error)
 
 bool imk_procedure_is_known(imk_procedure procedure)
 {
-    return procedure != IMK_PROCEDURE_MULTIPOSITION && procedure != IMK_PROCEDURE_THERMAL;
+    return procedure != IMK_PROCEDURE_MULTIPOSITION && procedure != IMK_PROCEDURE_THERMAL &&
+           procedure != IMK_PROCEDURE_MAGNETOMETER;
 }
 
 /* Take away the diagnostics whether holds can be found where sections name them: the procedure

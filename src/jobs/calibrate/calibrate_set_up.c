@@ -26,6 +26,9 @@ imk_calibrate_log_settings imk_calibrate_log_default(void)
     const double none = (double)NAN;
     return (imk_calibrate_log_settings){.cookie = settings_cookie,
                                         .gravity = none,
+                                        .field = none,
+                                        .field_sigma = none,
+                                        .dip = none,
                                         .frame = -1,
                                         .placement = none,
                                         .g_sensitivity_sigma = none,
@@ -149,6 +152,8 @@ imk_status imki_calibrate_set_up(imk_calibrate_log *b, const imk_procedure *proc
             return imk_error_set(error, IMK_ERROR_RANGE, "procedure", NULL, NULL);
         b->record[k].procedure = procedure[k];
         means = means || imk_procedure_takes_means(procedure[k]);
+        if (s->estimate && procedure[k] == IMK_PROCEDURE_MAGNETOMETER)
+            return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate", NULL, NULL);
     }
     if (s->pose_means && (!means || s->repeatability))
         return imk_error_set(error, IMK_ERROR_CONFLICT, "pose_means", NULL, NULL);

@@ -107,7 +107,7 @@ imk_status imk_calibrate_terms(const imk_calibration *calibration, int temperatu
     parameter_list list = {parameter, *count, capacity};
     imk_model_parameter single;
     bool found = false;
-    if (imk_model_parameter_parse(name, &single) == IMK_OK) {
+    if (imk_model_parameter_parse(name, &single) == IMK_OK && single.sensor != IMK_MAG) {
         if (!imk_model_parameter_at((imk_model *)&calibration->model, single, NULL))
             return imk_error_set(error, IMK_ERROR_RANGE, name, NULL, NULL);
         collect(&list, single);

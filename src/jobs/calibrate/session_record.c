@@ -90,6 +90,51 @@ static imk_status take_axes(imk_calibrate_record *log, int sensor, imk_findings 
     return IMK_OK;
 }
 
+/* Columns of this name whose unit is missing are none of a magnetometer. */
+static bool names_magnetometer(const imk_log *log)
+{
+    for (size_t c = 0; c < log->column_count; c++)
+        if (strncmp(log->column[c].name, "mag_", 4) == 0 &&
+            log->column[c].quantity != IMK_QUANTITY_MAGNETIC)
+            return true;
+    return false;
+}
+
+/* A magnetometer with three axes; else what there is of it is not looked at. */
+static imk_status take_magnetometer(imk_calibrate_record *log, imk_findings *findings,
+                                    imk_error *error)
+{
+    imk_test_record *record = &log->record;
+    const bool wanted = log->procedure == IMK_PROCEDURE_MAGNETOMETER;
+    int axes = 0;
+    log->mag_counts = false;
+    for (int i = 0; i < 3; i++) {
+        const int column = imk_log_find(&log->log, IMK_QUANTITY_MAGNETIC, i);
+        if (column < 0)
+            continue;
+        axes++;
+        record->mag[i] = log->log.data[column];
+        log->mag_counts =
+            log->mag_counts || imk_dimension_equal(log->log.column[column].unit.dimension,
+                                                   imk_unit_of("count").dimension);
+    }
+    if (axes < 3 || log->mag_counts)
+        for (int i = 0; i < 3; i++)
+            record->mag[i] = NULL;
+    else
+        log->mag = imk_magnetometer_look(record);
+    if (wanted && log->mag_counts)
+        return imki_fail(findings, error, IMK_ERROR_UNIT_MISSING, "mag_counts", NULL, 0, NULL);
+    if (wanted && axes < 3 && names_magnetometer(&log->log))
+        return imki_fail(findings, error, IMK_ERROR_UNIT_MISSING, "mag_counts", NULL, 0, NULL);
+    if (wanted && axes < 3)
+        return imki_fail(findings, error, IMK_ERROR_COLUMN, "no_magnetometer", NULL,
+                         IMKI_NUMBERS(axes));
+    if (!wanted && axes == 3 && record->axis_count[0] + record->axis_count[1] == 0)
+        return imki_fail(findings, error, IMK_ERROR_COLUMN, "magnetometer_only", NULL, 0, NULL);
+    return IMK_OK;
+}
+
 /* The column of this name, or the only one that holds texts; -1: there is none. */
 static imk_status find_section(const imk_calibrate_record *log, const char *wanted, int *found,
                                imk_findings *findings, imk_error *error)
@@ -197,7 +242,9 @@ static imk_status make_record(imk_calibrate_record *log, const char *section,
     imk_status status = take_axes(log, 0, findings, error);
     if (status == IMK_OK)
         status = take_axes(log, 1, findings, error);
-    if (status == IMK_OK && record->axis_count[0] + record->axis_count[1] == 0)
+    if (status == IMK_OK)
+        status = take_magnetometer(log, findings, error);
+    if (status == IMK_OK && record->axis_count[0] + record->axis_count[1] == 0 && !record->mag[0])
         status = imki_fail(findings, error, IMK_ERROR_COLUMN, "no_sensor", NULL, 0, NULL);
     if (status == IMK_OK)
         status = find_section(log, section, &column, findings, error);

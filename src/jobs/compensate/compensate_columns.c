@@ -90,7 +90,7 @@ imk_status imki_compensate_match(const imk_record_source *source, imk_compensate
     imk_status status = IMK_OK;
     columns->time = imk_record_find(source, IMK_QUANTITY_TIME, -1);
     columns->temperature = imk_record_find(source, IMK_QUANTITY_TEMPERATURE, -1);
-    if (there[0] + there[1] == 0)
+    if (there[0] + there[1] == 0 && !log->model.mag.present)
         return imki_fail(findings, error, IMK_ERROR_COLUMN, "compensate:no_sensor", NULL, 0, NULL);
     for (int sensor = 0; sensor < 2 && status == IMK_OK; sensor++) {
         const bool had = triads[sensor]->present;
@@ -107,7 +107,7 @@ imk_status imki_compensate_match(const imk_record_source *source, imk_compensate
         return status;
     for (int sensor = 0; sensor < 2; sensor++)
         triads[sensor]->present = triads[sensor]->present && there[sensor] > 0;
-    if (!triads[0]->present && !triads[1]->present)
+    if (!triads[0]->present && !triads[1]->present && !log->model.mag.present)
         return imki_fail(findings, error, IMK_ERROR_COLUMN, "no_sensor_in_model", NULL, 0, NULL);
     return IMK_OK;
 }

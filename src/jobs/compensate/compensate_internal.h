@@ -3,6 +3,7 @@
 #ifndef IMUKI_COMPENSATE_INTERNAL_H
 #define IMUKI_COMPENSATE_INTERNAL_H
 
+#include "imukit/attitude.h"
 #include "imukit/compensate_log.h"
 
 /* How columns of a record and axes of a model belong together, and which columns are written. */
@@ -24,6 +25,20 @@ imk_status imki_compensate_match(const imk_record_source *source, imk_compensate
 /* Columns of the corrected record. */
 imk_status imki_compensate_describe(const imk_record_source *source, imk_compensate_log *log,
                                     imki_compensate_columns *columns, imk_error *error);
+
+/* The magnetometer of a record. */
+typedef struct imki_magnetic {
+    bool present; /* in the record and in the model */
+    int column[3];
+    double bias[3]; /* [T] */
+    imk_matrix3 inverse;
+} imki_magnetic;
+/* log->model.mag.present says then whether it is corrected. */
+void imki_magnetic_start(const imk_record_source *source, imk_compensate_log *log,
+                         imki_magnetic *magnetic);
+/* Rows begin to before end, in place. */
+void imki_magnetic_correct(const imki_magnetic *magnetic, size_t begin, size_t end,
+                           double *const *data);
 
 /* What compensation takes out. */
 imk_term_keys imki_taken_out(const imk_model *model);

@@ -39,6 +39,7 @@ typedef struct stream {
     const imk_model *whole;
     imk_compensate_log *log;
     imki_compensate_columns columns;
+    imki_magnetic magnetic;
     double *data[IMK_LOG_COLUMNS_MAX];  /* BLOCK_ROWS + 1 rows each */
     double *corrected[2][IMK_AXES_MAX]; /* likewise */
     double *flag_column, *temperature, *workspace;
@@ -260,6 +261,7 @@ static imk_status next_block(stream *s, bool first, size_t *got, const imk_job *
         status = start(s, *got, error);
     if (status != IMK_OK)
         return status;
+    imki_magnetic_correct(&s->magnetic, s->waiting, s->waiting + *got, s->data);
     const size_t rows = s->waiting + *got, ready = *got > 0 ? correct_rows(s, rows) : flush(s, 0);
     status = write_rows(s, ready, first_row, job, error);
     s->waiting = rows - ready;
@@ -297,6 +299,7 @@ static imk_status compensate(stream *s, const imk_job *job, imk_error *error)
 {
     imk_compensate_log *log = s->log;
     size_t got = 1;
+    imki_magnetic_start(s->source, log, &s->magnetic);
     imk_status status = imki_compensate_match(s->source, log, &s->columns, error);
     if (status != IMK_OK)
         return status;

@@ -39,12 +39,23 @@ static bool is_noise(const imki_field *field, int kind)
 /* What a field is listed as, in this order: direction and noise are asked for by themselves. */
 enum { TERM, SENSITIVITY, STAYS, LISTS, UNLISTED };
 
+/* Of a magnetometer only what is the same in all rows is taken out. */
+static bool is_fixed(const imki_field *field)
+{
+    const int term = imki_field_term(field);
+    return term >= 0 &&
+           (imki_terms[term].form == IMKI_FORM_ONE || imki_terms[term].form == IMKI_FORM_INPUT ||
+            imki_terms[term].form == IMKI_FORM_SEEN);
+}
+
 static int list_of(const imki_field *field, int kind)
 {
     if (!field->path[kind] || field->flags & IMKI_COMPANION || is_noise(field, kind))
         return UNLISTED;
     if (field->flags & IMKI_OUTPUT)
         return field->offset == offsetof(imk_triad, sensitivity) ? SENSITIVITY : UNLISTED;
+    if (kind == IMK_MAG)
+        return is_fixed(field) ? TERM : STAYS;
     return imki_field_taken_out(field) ? TERM : STAYS;
 }
 
@@ -105,6 +116,7 @@ imk_term_keys imki_taken_out(const imk_model *model)
     imk_term_keys list = {0};
     add_taken_out(&list, &model->gyro, IMK_GYRO);
     add_taken_out(&list, &model->accel, IMK_ACCEL);
+    add_taken_out(&list, &model->mag, IMK_MAG);
     return list;
 }
 
@@ -113,6 +125,7 @@ imk_term_keys imki_left_in(const imk_model *model, const imk_model *whole)
     imk_term_keys list = {0};
     add_left_in(&list, &model->gyro, &whole->gyro, IMK_GYRO);
     add_left_in(&list, &model->accel, &whole->accel, IMK_ACCEL);
+    add_left_in(&list, &model->mag, &whole->mag, IMK_MAG);
     for (size_t i = 0; i < imki_timing_field_count; i++)
         if (*imki_field_values(&imki_timing_fields[i], &whole->timing) != 0)
             add(&list, "timing", imki_timing_fields[i].path[0]);

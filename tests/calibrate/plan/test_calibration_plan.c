@@ -168,6 +168,10 @@ static void all_procedures_are_planned(void **state)
     static imk_motion_step motion[4 * STEPS + 1];
     for (int procedure = 0; procedure < IMK_PROCEDURES; procedure++) {
         const imk_plan_settings settings = settings_of((imk_procedure)procedure);
+        if (procedure == IMK_PROCEDURE_MAGNETOMETER) { /* needs no plan: any rotation by hand */
+            CHECK_STATUS(make(b, &settings), IMK_ERROR_RANGE);
+            continue;
+        }
         CHECK_OK(make(b, &settings));
         assert_true(b->result.step_count >= 3 && b->result.parameter_count > 0);
         imk_motion_script script;

@@ -245,6 +245,7 @@ static void show_data(const imk_calibrate_log *b, const imk_verdict *v, const ch
     imki_show_turns(b, result);
     show_runs(b, result);
     show_closed_form(b, result);
+    imki_magnetometer_data(b, result);
     imk_result_end(result);
 }
 
@@ -301,13 +302,14 @@ static void show_holds(const imk_calibrate_record *log, imk_result *result)
 static void show_evidence(const imk_calibrate_log *b, imk_result *result)
 {
     imk_result_for(result, IMK_FOR_PAGE);
-    if (b->result && !b->ferraris) {
+    const bool observed = b->result && !b->ferraris && b->calibration->observation_count > 0;
+    if (observed) {
         imki_calibrate_figure(b, result);
         imk_result_heading(result, "Observations");
     }
     for (const imk_calibrate_record *log = b->record; log < b->record + b->count; log++)
         show_holds(log, result);
-    if (b->result && !b->ferraris)
+    if (observed)
         imki_pose_table(b, result);
 }
 
@@ -327,6 +329,7 @@ void imk_show_calibrate_log(const imk_calibrate_log *b, const imk_verdict *v, bo
             imki_runs_table(b, sensor, result);
         else
             imki_parameter_table(b, sensor, result);
+    imki_parameter_table(b, IMK_MAG, result);
     imk_result_for(result, IMK_FOR_PAGE);
     if (b->result)
         imk_result_line(result,
@@ -340,7 +343,7 @@ void imk_show_calibrate_log(const imk_calibrate_log *b, const imk_verdict *v, bo
         imk_result_heading(result, "Fit");
     imk_result_for(result, IMK_FOR_TERMINAL);
     show_temperature(b, true, result);
-    if (fitted && poses)
+    if (fitted && poses && b->calibration->observation_count > 0)
         imki_pose_table(b, result);
     imk_result_for(result, IMK_FOR_BOTH);
     if (fitted)

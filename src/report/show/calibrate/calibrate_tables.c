@@ -149,6 +149,7 @@ void imki_fit_table(const imk_calibrate_log *b, imk_result *result)
         imk_table_add(table, "%.4g %s", fit->rms / unit.scale, unit.text);
     }
     imki_turn_fit(b, table);
+    imki_magnetometer_row(b, table);
     imk_result_gap(result);
 }
 

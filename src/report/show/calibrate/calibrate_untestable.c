@@ -3,6 +3,7 @@
  * named, so that "Good" does not vouch for it. */
 #include "calibrate_show_internal.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #define add_item(list, words)                                                                      \
@@ -64,11 +65,24 @@ static void add_of_gravity(const imk_calibrate_log *b, imki_text *list)
                        "another right-handed order");
 }
 
+/* The sign of the dip tells which way round a magnetometer is, where it is known. */
+static void add_of_magnetometer(const imk_calibrate_log *b, imki_text *list)
+{
+    if (!b->mag)
+        return;
+    if (b->mag->aligned && isnan(b->settings.dip) && !b->settings.place_known)
+        add_item(list, "all three axes of the magnetometer with the opposite sign (the dip is then "
+                       "the opposite one)");
+    if (!b->mag->aligned)
+        add_item(list, "signs and order of the magnetometer's axes");
+}
+
 void imki_untestable(const imk_calibrate_log *b, imk_verdict *v)
 {
     imki_text list = {0};
     add_of_gyros(b, &list);
     add_of_gravity(b, &list);
+    add_of_magnetometer(b, &list);
     if (list.bytes)
         imki_verdict_add(v, IMK_FINDING_NOTE, "not_testable", "Cannot be seen in %s: %s",
                          b->count == 1 ? "this log" : "these logs", list.bytes);

@@ -35,11 +35,14 @@ static double worst(const imk_calibrate_log *b, int sensor, int term)
 /* "accelerometer bias to 0.05 mg, scale factor to 65 ppm, misalignment to 0.02 mrad" */
 static void describe_precision(const imk_calibrate_log *b, imki_text *list)
 {
-    static const int terms[3] = {IMK_MODEL_BIAS, IMK_MODEL_SCALE_FACTOR, IMK_MODEL_MISALIGNMENT};
-    static const char *const names[3] = {"bias", "scale factor", "misalignment"};
-    for (int sensor = 1; sensor >= 0; sensor--) {
+    static const int terms[4] = {IMK_MODEL_BIAS, IMK_MODEL_SCALE_FACTOR, IMK_MODEL_MISALIGNMENT,
+                                 IMK_MODEL_CROSS_AXIS};
+    static const char *const names[4] = {"bias", "scale factor", "misalignment", "cross-axis"};
+    static const int order[IMK_KINDS] = {IMK_ACCEL, IMK_GYRO, IMK_MAG};
+    for (int k = 0; k < IMK_KINDS; k++) {
+        const int sensor = order[k];
         bool first = true;
-        for (int t = 0; t < 3; t++) {
+        for (int t = 0; t < 4; t++) {
             const double sigma = worst(b, sensor, terms[t]);
             if (!(sigma > 0))
                 continue;
@@ -221,7 +224,9 @@ static void show_correlated(const imk_calibrate_log *b, imk_result *result)
         for (size_t j = 0; j < i && listed < LISTED_MAX; j++) {
             const double value = r->covariance[i * n + j] / (r->sigma[i] * r->sigma[j]);
             char one[IMK_MODEL_PARAMETER_NAME], other[IMK_MODEL_PARAMETER_NAME];
-            if (!(fabs(value) > 0.9) || imk_model_parameter_name(r->parameter[i], one) != IMK_OK ||
+            /* Pairs that a symmetric frame ties are one number. */
+            if (!(fabs(value) > 0.9 && fabs(value) < 1 - 1e-9) ||
+                imk_model_parameter_name(r->parameter[i], one) != IMK_OK ||
                 imk_model_parameter_name(r->parameter[j], other) != IMK_OK)
                 continue;
             imk_result_line(result, "Correlation of %s and %s: %+.4f.", other, one, value);
@@ -235,6 +240,7 @@ void imki_calibrate_remarks(const imk_calibrate_log *b, imk_result *result)
         return;
     show_frame(b, result);
     show_gravity(b, result);
+    imki_magnetometer_remarks(b, result);
     if (b->ferraris)
         imk_result_line(result, "Closed form: 1 sigma contains the scatter within the holds and "
                                 "the uncertainty of the turn angles; it does not contain how well "
