@@ -11,7 +11,7 @@
  * among the sets that the search has met: the charge of one unit for a parameter makes likelihoods
  * of different sets comparable [AKAIKE1978]. A term whose interval then begins at zero is not
  * certain: the record could hold something else in its place. */
-#include "identify_internal.h"
+#include "identify/joint/joint_shape_internal.h"
 
 #include <math.h>
 
@@ -145,6 +145,20 @@ static void join_quantization(imki_work *w, imk_identification *result, double b
         join_near(w, result, best, drop);
 }
 
+/* A resonance at the least quality that is tried is a wider one, or another shape. What it leaves
+ * over has its frequencies, and a Gauss-Markov term with a corner there may be nothing else. */
+static void doubt_beside_widest(imk_identification *result)
+{
+    for (int r = 0; r < result->resonance_count; r++)
+        for (int i = 0; i < result->gauss_markov_count; i++) {
+            struct imk_gauss_markov_estimate *g = &result->gauss_markov[i];
+            const double corner = 1 / (6.283185307179586 * g->correlation_time.value);
+            const double ratio = corner / result->resonance[r].frequency;
+            if (result->resonance[r].q < 1.001 * IMKI_WIDEST && ratio > 0.1 && ratio < 10)
+                g->sigma.lower = 0;
+        }
+}
+
 void imki_intervals_join(imki_work *w, imk_identification *result, double drop)
 {
     imki_fit *fit = w->fit;
@@ -168,5 +182,6 @@ void imki_intervals_join(imki_work *w, imk_identification *result, double drop)
             join_quantization(w, result, best, drop);
         }
     imki_fit_restore(fit, w->bands, &chosen);
+    doubt_beside_widest(result);
     result->ambiguous = uncertain_of(result);
 }
