@@ -70,6 +70,10 @@ typedef struct imk_screen {
     double clipped_gain;   /**< how far a slow change, smaller than the noise, shows: the share of
                               samples between these values */
     double clipped_misfit; /**< relative difference of the deviation from that of such noise */
+    bool interpolated;     /**< the noise is stronger and weaker in a cycle of some samples, as between
+                              the samples of a slower sensor */
+    double sensor_rate[2]; /**< its rate over that of the log; the second is 0, or another one if
+                              coarse steps hide which it is */
     double repeated;       /**< share of samples equal to the one before */
     double resolution;     /**< smallest step between values; 0 when none is detected */
     double deviation;      /**< of the samples about their mean */

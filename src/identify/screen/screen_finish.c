@@ -193,6 +193,7 @@ void imki_screen_conclude(imk_screener *s)
     f->stuck.first = f->stuck.count > 0 ? f->stuck.first : f->n;
     find_saturation(s);
     find_tails(s);
+    f->interpolated = imki_cycles_find(&s->cycles, 0.1 * s->settings.significance, f->sensor_rate);
     find_slow(s);
     /* The room holds the temperatures from here on, for imk_screener_trend(). */
     const imki_levels *l = &s->levels;

@@ -16,6 +16,7 @@ enum {
     IMKI_SCREEN_SHARES = 64,
     IMKI_SCREEN_BATCHES = 3,
     IMKI_SCREEN_ENDS = 8,
+    IMKI_CYCLE_SEGMENT = 1024,
     /* What a sample is marked with. */
     IMKI_MARK_STUCK = 1,
     IMKI_MARK_OUTLIER = 2
@@ -47,6 +48,15 @@ typedef struct imki_batches {
     double blocks, sum; /* of the batch being filled */
     double count, total, squares;
 } imki_batches;
+
+/* Cycles of the strength of the noise, a number to a segment of second differences. */
+typedef struct imki_cycles {
+    double roots[2 * IMKI_CYCLE_SEGMENT];
+    /* of the segments, sums of their coupling: each at most so large; as it is */
+    double sum[IMKI_CYCLE_SEGMENT / 2 + 1], whole[IMKI_CYCLE_SEGMENT / 2 + 1];
+    double segments;
+    double differences, straight, straight_by_chance; /* second differences, those that vanish */
+} imki_cycles;
 
 typedef struct imki_counting {
     size_t run;  /* of missing samples at the end of what was seen */
@@ -89,6 +99,7 @@ struct imk_screener {
     double shift, norm, mean; /* of the samples: Chan's update of mean and root sum of squares */
     imki_ends high, low;      /* low: of the negatives */
     imki_levels levels;
+    imki_cycles cycles;
     imk_screen found;
 };
 
@@ -134,6 +145,16 @@ size_t imki_levels_means(const imki_levels *levels, size_t most, const double *s
                          const double *present, double shift, double *mean, double *empty);
 /* Samples of a group. */
 size_t imki_levels_length(const imki_levels *levels, size_t most);
+
+/* screener_cycles.c */
+void imki_cycles_begin(imki_cycles *cycles);
+/* @param samples  of a chunk, NaN where missing @param step  between values; 0: not known
+ * @param room  6 segments of doubles */
+void imki_cycles_add(imki_cycles *cycles, size_t chunk, size_t count, const double *samples,
+                     double step, double *room);
+/* Has the noise a cycle? @param rate  set to the rate of the sensor over that of the log; the
+ * second is 0, or another one if coarse steps hide which it is */
+bool imki_cycles_find(const imki_cycles *cycles, double significance, double rate[2]);
 
 /* level_jumps.c */
 /* Most likely sudden changes among n means, 64 <= n <= IMKI_SCREEN_LEVELS, each significant beside

@@ -151,6 +151,19 @@ static bool find_saturated(const imk_identify_log *log, size_t channel, imki_tex
     return s->saturated.count > 0;
 }
 
+/* Held samples have a cycle, too, and are told by the rows. */
+static bool find_interpolated(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    for (size_t k = 0; k < log->findings.count; k++)
+        if (strcmp(log->findings.item[k].code, "stamps:held") == 0)
+            return false;
+    imki_text_add(detail, "from about %.3g Hz", s->sensor_rate[0] / log->record.dt);
+    if (s->sensor_rate[1] > 0)
+        imki_text_add(detail, " or %.3g Hz", s->sensor_rate[1] / log->record.dt);
+    return s->interpolated;
+}
+
 static bool find_warm_up(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_screen *s = &log->screen[channel];
@@ -367,6 +380,12 @@ static const struct concern {
      "samples at the end of the range; the values are those of normal noise before it was cut off "
      "there, and their intervals allow for that assumption",
      "samples at the end of the range, kept; the values are too low by these factors"},
+    {0, find_interpolated, 0, IMK_FINDING_WARNING, "interpolated",
+     "the log looks interpolated: its noise is stronger and weaker in a cycle, as between the "
+     "samples of a slower sensor; interpolation takes away noise at short averaging times, so "
+     "white noise, quantization, filter and resonances are not the sensor's; log the samples of "
+     "the sensor themselves",
+     NULL},
     {0, find_warm_up, IMK_SCREEN_WARM_UP, IMK_FINDING_NOTE, "warm_up_removed",
      "a warm-up at the start, subtracted", "a warm-up at the start, kept"},
     {0, find_temperature, IMK_SCREEN_TEMPERATURE, IMK_FINDING_NOTE, "temperature",

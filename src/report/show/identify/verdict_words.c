@@ -22,6 +22,8 @@ static const struct words {
     {"saturated", "samples stick at the end of the range in %s",
      "Samples at an extreme value: %s."},
     {"frozen", "samples are repeated in %s, so that the true rate is lower", "Repeats: %s."},
+    {"interpolated", "%s look interpolated from a slower sensor, so that noise is missing",
+     "Interpolated from a slower sensor: %s."},
     {"warm_up", "the slow terms of %s include a start that drifts differently",
      "A start that drifts differently: %s."},
     {"misfit", "the model does not describe %s at all averaging times",
