@@ -24,8 +24,10 @@ enum {
     HALF = SEGMENT / 2,
     STRIDE = SEGMENT + 2, /* samples of a segment of second differences */
     GROUP = 32,           /* coefficients among which one is large */
-    EARLY = 4,            /* chunks that are used in full; of later ones the first segment */
-    LEAST = 12,           /* cycles in a segment: slower ones are changes of the noise */
+    EARLY = 4,            /* chunks that are used in full; of later ones the first segment, */
+    MANY = 32,
+    EVERY = 4,  /* and after so many of every fourth one */
+    LEAST = 12, /* cycles in a segment: slower ones are changes of the noise */
     SEGMENTS_MIN = 4
 };
 
@@ -135,6 +137,8 @@ void imki_cycles_add(imki_cycles *c, size_t chunk, size_t count, const double *s
                      double *room)
 {
     const size_t end = chunk < EARLY ? count : STRIDE < count ? STRIDE : count;
+    if (chunk >= MANY && chunk % EVERY != 0)
+        return;
     for (size_t from = 0; from + STRIDE <= end; from += STRIDE)
         add_segment(c, samples + from, step, room);
 }
@@ -174,8 +178,9 @@ static double centre(const imki_cycles *c, size_t at)
     return (sum > 0 ? moment / sum : (double)at) / SEGMENT;
 }
 
-/* Rates of the sensor over that of the log. A rate above one half shows at one minus itself. Below,
- * samples lie on straight lines: of them a share of 1 - 2a to 1 - a. */
+/* Rates of the sensor over that of the log; 0: noise that alternates from row to row. A rate above
+ * one half shows at one minus itself. Below, samples lie on straight lines: of them a share of 1 -
+ * 2a to 1 - a. */
 static void find_rates(const imki_cycles *c, double *rate)
 {
     const double found = centre(c, strongest(c, LEAST, HALF));
@@ -183,8 +188,13 @@ static void find_rates(const imki_cycles *c, double *rate)
     const double straight = (c->straight / c->differences - chance) / (1 - chance);
     rate[0] = 1 - found;
     rate[1] = chance < 0.02 ? 0 : found;
-    if (!(chance < 0.02) || !(straight > 0.02))
+    if (!(chance < 0.02))
         return;
+    if (!(straight > 0.02)) {
+        /* of a log interpolated by two, half of the second differences vanish */
+        rate[0] = found * SEGMENT > HALF - 0.6 ? 0 : rate[0];
+        return;
+    }
     const double low = 0.45 * (1 - straight) * SEGMENT, high = 1.05 * (1 - straight) * SEGMENT;
     const size_t from = low > LEAST ? (size_t)low : LEAST;
     const size_t to = high < HALF ? (size_t)high : HALF;

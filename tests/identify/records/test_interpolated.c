@@ -90,6 +90,21 @@ static void test_coarse_short_missing(void **state)
     }
 }
 
+/* Two sensors in turn, the one with twice the noise of the other, are no interpolated log; it is
+ * the same if the values are those of two channels of a converter with 20 % more noise in one. */
+static void test_alternating(void **state)
+{
+    (void)state;
+    static const double stronger[] = {2, 1.2};
+    for (size_t k = 0; k < 2; k++) {
+        make(3, rate, N, 0.2, 0.003);
+        for (size_t i = 0; i < N; i += 2)
+            rate[i] *= stronger[k];
+        const imk_screen s = look(N);
+        assert_true(s.interpolated && s.sensor_rate[0] == 0);
+    }
+}
+
 /* Kind 0 … 9 of sound records. */
 static void make_sound(uint32_t kind, uint32_t run, size_t count)
 {
@@ -161,9 +176,8 @@ static void test_false_alarm(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_found),
-        cmocka_unit_test(test_coarse_short_missing),
-        cmocka_unit_test(test_sound),
+        cmocka_unit_test(test_found),       cmocka_unit_test(test_coarse_short_missing),
+        cmocka_unit_test(test_alternating), cmocka_unit_test(test_sound),
         cmocka_unit_test(test_false_alarm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
