@@ -27,19 +27,19 @@ def _channel(c):
 
 
 def identify(imukit, operands):
-    """Run `imukit identify`.  @return a dict: refused (the message, or None), doubts and notes
-    (codes), channels"""
+    """Run `imukit identify`.  @return a dict: refused (the message, or None), doubts (codes), notes
+    (messages by code), channels"""
     command = ["nice", imukit, "identify", *operands, "--json", "--threads", "1"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0 or not done.stdout:
         message = done.stderr.strip().splitlines()
         return {"refused": message[-1] if message else f"exit {done.returncode}", "doubts": [],
-                "notes": [], "warnings": [], "channels": []}
+                "notes": {}, "warnings": [], "channels": []}
     data = json.loads(done.stdout)
     verdict = data["result"]["verdict"]
     return {"refused": None,
             "doubts": sorted({v["code"] for v in verdict if v["level"] in ("warning", "failure")}),
-            "notes": sorted({v["code"] for v in verdict if v["level"] == "note"}),
+            "notes": {v["code"]: v["message"] for v in verdict if v["level"] in ("note", "good")},
             "warnings": sorted({w["code"] for w in data["warnings"]}),
             "channels": [_channel(c) for c in data["result"]["channels"]]}
 

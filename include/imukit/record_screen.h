@@ -70,8 +70,8 @@ typedef struct imk_screen {
     double clipped_gain;   /**< how far a slow change, smaller than the noise, shows: the share of
                               samples between these values */
     double clipped_misfit; /**< relative difference of the deviation from that of such noise */
-    bool interpolated;     /**< the noise is stronger and weaker in a cycle of some samples, as between
-                              the samples of a slower sensor */
+    bool interpolated; /**< the noise is stronger and weaker in a cycle of some samples, as between
+                          the samples of a slower sensor */
     double sensor_rate[2]; /**< its rate over that of the log, 0 if the noise alternates from row to
                               row; the second is 0, or another one if coarse steps hide which it is
                             */
