@@ -70,14 +70,15 @@ def _moves_of(clean, faulty, factor):
 
 
 def move(clean, faulty, factor=1):
-    """The largest move of any term of any channel.  @return a dict: class (0: within one
+    """The largest move of any term of any channel. factor: what the fault, if it is a property, does
+    to N, and so to the bound of Q, which stands on it.  @return a dict: class (0: within one
     half-width, 1: up to max(3 half-widths, 2 %), 2: beyond), term, channel, half_widths, percent;
     None when there is nothing to compare"""
     worst = None
     for a, b in zip(clean["channels"], faulty["channels"]):
         for term in a["terms"].keys() & b["terms"].keys():
             change, half, value = _moves_of(a["terms"][term], b["terms"][term],
-                                            factor if term == "N" else 1)
+                                            factor if term in "NQ" else 1)
             if not math.isfinite(change) or not math.isfinite(half) or half <= 0:
                 continue
             limit = max(3 * half, 0.02 * abs(value))

@@ -137,14 +137,14 @@ def _names(entry, code):
 def told(entry):
     """An all-clear of which a note says what else explains the term that moved, on its channel."""
     move = entry["move"]
-    return (not entry["verdict_doubts"] and move and move["class"] == 2
-            and any(_names(entry, code) for code in TELLING.get(move["term"], ())))
+    return bool(not entry["verdict_doubts"] and move and move["class"] == 2
+                and any(_names(entry, code) for code in TELLING.get(move["term"], ())))
 
 
 def _silent(fault, entry):
     """An all-clear of an undecidable fault that moves a value, without the note that says so."""
-    return (not entry["verdict_doubts"] and entry["move"] and entry["move"]["class"] == 2
-            and fault.says and fault.says not in entry["notes"])
+    return bool(not entry["verdict_doubts"] and entry["move"] and entry["move"]["class"] == 2
+                and fault.says and fault.says not in entry["notes"])
 
 
 def _sum_line(groups):

@@ -414,9 +414,9 @@ static const struct concern {
      "samples at the end of the range, kept; the values are too low by these factors"},
     {0, find_interpolated, 0, IMK_FINDING_WARNING, "interpolated",
      "the log looks interpolated: its noise is stronger and weaker in a cycle, as between the "
-     "samples of a slower sensor; interpolation takes away noise at short averaging times, so "
-     "white noise, quantization, filter and resonances are not the sensor's; log the samples of "
-     "the sensor themselves",
+     "samples of a slower sensor, if no interference modulates it; interpolation takes away noise "
+     "at short averaging times, so white noise, quantization, filter and resonances are not the "
+     "sensor's; log the samples of the sensor themselves",
      NULL},
     {0, find_alternating, 0, IMK_FINDING_WARNING, "alternating",
      "the noise is stronger in every other row, as if two sensors or two converters wrote the log "
