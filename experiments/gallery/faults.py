@@ -22,6 +22,7 @@ class Fault:
     apply: callable  # (record, rng, strength): changes the record
     about: str
     undecidable: str = ""  # why another sound device explains the log as well
+    says: str = ""  # code of the note in which the output says so
     factor: callable = None  # (strength): what the fault does to the true N, where it is a property
     harmless: str = ""  # why the right answer is an all-clear with unmoved estimates
     most: int = 40  # pairs at the middle strength
@@ -323,7 +324,9 @@ FAULTS = [
           "a warm-up of 3 minutes in 12 hours", most=8),
     Fault("spikes", "1", "nb_30min", (8, 30, 1000), "sigma", spikes(20), "20 spikes in 30 minutes"),
     Fault("spikes_many", "2", "nb_30min", (5, 10, 50), "sigma", spikes(1800),
-          "spikes in 1 % of the samples"),
+          "spikes in 1 % of the samples",
+          undecidable="a device whose noise has such tails writes the same log; N is of the whole",
+          says="gaussian", factor=lambda s: np.sqrt(1 + 0.01 * s * s)),
     Fault("bursts_9", "2", "nb_30min", (2, 4.3, 10), "noise x", contaminated_bursts,
           "9 % of the samples in bursts of more noise"),
     Fault("samples_9", "2", "nb_30min", (2, 4.3, 10), "noise x", contaminated_samples,
@@ -362,7 +365,7 @@ FAULTS = [
           "interpolated to a higher rate"),
     Fault("clock_back", "3", "nb_30min", (0.05, 2, 600), "s", clock_back, "the clock jumps back"),
     Fault("clock_forward", "3", "nb_30min", (1, 60, 600), "s", clock_forward,
-          "the clock jumps ahead", undecidable="missing rows look the same"),
+          "the clock jumps ahead", undecidable="missing rows look the same", says="missing"),
     Fault("clip_both", "4", "nb_30min", (3, 2.5, 2), "sigma", clip(True, True),
           "clipped on both sides"),
     Fault("clip_above", "4", "nb_30min", (3, 2.5, 2), "sigma", clip(False, True),
@@ -391,7 +394,7 @@ FAULTS = [
     Fault("gyro_unit", "10", "nb_30min", (0.01745329252, 57.29578, 206264.8), "x", wrong_scale,
           "gyros in another unit than the header says", undecidable=SAME_DEVICE),
     Fault("wrong_rate", "11", "nb_30min", (1.02, 0.5, 2), "rate x", wrong_rate,
-          "without a time column and with a wrong --rate", undecidable=SAME_DEVICE),
+          "without a time column and with a wrong --rate", undecidable=SAME_DEVICE, says="length"),
 ]
 
 BY_NAME = {fault.name: fault for fault in FAULTS}

@@ -27,19 +27,19 @@ def _channel(c):
 
 
 def identify(imukit, operands):
-    """Run `imukit identify`.  @return a dict: refused (the message, or None), doubts and notes
-    (codes), channels"""
+    """Run `imukit identify`.  @return a dict: refused (the message, or None), doubts (codes), notes
+    (messages by code), channels"""
     command = ["nice", imukit, "identify", *operands, "--json", "--threads", "1"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0 or not done.stdout:
         message = done.stderr.strip().splitlines()
         return {"refused": message[-1] if message else f"exit {done.returncode}", "doubts": [],
-                "notes": [], "warnings": [], "channels": []}
+                "notes": {}, "warnings": [], "channels": []}
     data = json.loads(done.stdout)
     verdict = data["result"]["verdict"]
     return {"refused": None,
             "doubts": sorted({v["code"] for v in verdict if v["level"] in ("warning", "failure")}),
-            "notes": sorted({v["code"] for v in verdict if v["level"] == "note"}),
+            "notes": {v["code"]: v["message"] for v in verdict if v["level"] in ("note", "good")},
             "warnings": sorted({w["code"] for w in data["warnings"]}),
             "channels": [_channel(c) for c in data["result"]["channels"]]}
 
@@ -70,14 +70,15 @@ def _moves_of(clean, faulty, factor):
 
 
 def move(clean, faulty, factor=1):
-    """The largest move of any term of any channel.  @return a dict: class (0: within one
+    """The largest move of any term of any channel. factor: what the fault, if it is a property, does
+    to N, and so to the bound of Q, which stands on it.  @return a dict: class (0: within one
     half-width, 1: up to max(3 half-widths, 2 %), 2: beyond), term, channel, half_widths, percent;
     None when there is nothing to compare"""
     worst = None
     for a, b in zip(clean["channels"], faulty["channels"]):
         for term in a["terms"].keys() & b["terms"].keys():
             change, half, value = _moves_of(a["terms"][term], b["terms"][term],
-                                            factor if term == "N" else 1)
+                                            factor if term in "NQ" else 1)
             if not math.isfinite(change) or not math.isfinite(half) or half <= 0:
                 continue
             limit = max(3 * half, 0.02 * abs(value))

@@ -3,6 +3,7 @@
 """Tables of results: tables.py RESULTS.json prints them again, tables.py OLD.json NEW.json
 compares two versions."""
 import json
+import re
 import sys
 from collections import Counter, defaultdict
 from pathlib import Path
@@ -84,7 +85,8 @@ def pair_classes(group):
 
 
 def _worst(group):
-    moved = [e for e in group if e["move"] and e["move"]["class"] == 2 and not e["verdict_doubts"]]
+    moved = [e for e in group if e["move"] and e["move"]["class"] == 2
+             and not e["verdict_doubts"] and not told(e)]
     if not moved:
         return ""
     w = max(moved, key=lambda e: e["move"]["ratio"])["move"]
@@ -116,28 +118,53 @@ def _reasons(groups):
             if _mark(f) and any((f.name, k) in groups for k in range(3))]
 
 
-# Notes that name another explanation of a term that is claimed.
-TELLING = {"K": {"walk_or_drift", "ambiguous"}, "R": {"walk_or_drift", "ambiguous"},
-           "B": {"ambiguous"}}
+# Notes that name another explanation of a term, if they name the channel, too.
+TELLING = {"K": {"walk_or_drift", "ambiguous", "possible_step"},
+           "R": {"walk_or_drift", "ambiguous", "possible_step"},
+           "B": {"ambiguous", "possible_step"}}
+
+
+WORDS = {"K": "random walk", "R": "ramp", "B": "bias instability"}
+
+
+def _names(entry, code):
+    """Does the note name the channel, and of terms that stand for each other the one that moved?"""
+    move = entry["move"]
+    about = re.search(re.escape(move["channel"]) + r" \(([^)]*)\)", entry["notes"].get(code, ""))
+    return bool(about) and (code != "ambiguous" or WORDS[move["term"]] in about.group(1))
 
 
 def told(entry):
-    """An all-clear whose moved term is claimed with a note on what else explains the log."""
+    """An all-clear of which a note says what else explains the term that moved, on its channel."""
     move = entry["move"]
-    return (not entry["doubted"] and move and move["class"] == 2
-            and bool(TELLING.get(move["term"], set()) & set(entry["notes"])))
+    return bool(not entry["verdict_doubts"] and move and move["class"] == 2
+                and any(_names(entry, code) for code in TELLING.get(move["term"], ())))
+
+
+def _silent(fault, entry):
+    """An all-clear of an undecidable fault that moves a value, without the note that says so."""
+    return bool(not entry["verdict_doubts"] and entry["move"] and entry["move"]["class"] == 2
+                and fault.says and fault.says not in entry["notes"])
 
 
 def _sum_line(groups):
     beyond = [pair_classes(g)[1][2] for (name, _), g in groups.items()
               if not faults.BY_NAME[name].undecidable]
     total, clear, verdict = (sum(b[k] for b in beyond) for k in range(3))
+    middle = [pair_classes(g)[1][1] for (name, _), g in groups.items()
+              if not faults.BY_NAME[name].undecidable]
     harmless = [e for (name, _), g in groups.items() for e in g if faults.BY_NAME[name].harmless]
     named = sum(map(told, (e for (name, _), g in groups.items() for e in g
                            if not faults.BY_NAME[name].undecidable)))
-    return (f"False all-clears: {clear} of {total} pairs that moved beyond max(3 half-widths, 2 "
-            f"%); {verdict} by the verdict alone (allowed: 0; undecidable faults apart).\n"
-            f"In {named} of these a note says what else the moved term may be.\n"
+    silent = sum(_silent(faults.BY_NAME[name], e) for (name, _), g in groups.items()
+                 if faults.BY_NAME[name].undecidable for e in g)
+    return (f"All-clears among {total} pairs that moved beyond max(3 half-widths, 2 %): {verdict} "
+            f"by the verdict, {clear} also without a word on standard error.\n"
+            f"Of the {verdict}, a note says in {named} what else the moved term may be; "
+            f"false: {verdict - named} (allowed: 0).\n"
+            f"All-clears among {sum(b[0] for b in middle)} pairs that moved by one half-width to "
+            f"there: {sum(b[2] for b in middle)}.\n"
+            f"Undecidable faults that move a value without the note that says so: {silent}.\n"
             f"Harmless faults doubted by the verdict: {sum(map(_in_verdict, harmless))} of "
             f"{len(harmless)}.")
 
@@ -160,13 +187,15 @@ def worst_table(entries):
     """Faults in the order of their false all-clears."""
     rows = []
     for (name, level), group in _grouped(entries).items():
-        _, clear, verdict = pair_classes(group)[1][2]
+        verdict = pair_classes(group)[1][2][2]
+        named = sum(map(told, group))
         if verdict and not faults.BY_NAME[name].undecidable:
-            rows.append((clear / len(group), verdict / len(group), clear, verdict, len(group),
-                         name, level, _worst(group)))
-    lines = ["False all-clears, the most frequent first; of the verdict alone; pairs"]
-    for _, _, clear, verdict, total, name, level, worst in sorted(rows, reverse=True):
-        lines.append(f"  {name:18} {faults.LEVELS[level]:6} {clear:3} {verdict:3} of {total:3}  "
+            rows.append(((verdict - named) / len(group), verdict, named, len(group), name, level,
+                         _worst(group)))
+    lines = ["All-clears of the verdict, the most frequent first; with a note on what else the term "
+             "may be; pairs"]
+    for _, verdict, named, total, name, level, worst in sorted(rows, reverse=True):
+        lines.append(f"  {name:18} {faults.LEVELS[level]:6} {verdict:3} {named:3} of {total:3}  "
                      f"{worst}")
     return "\n".join(lines)
 

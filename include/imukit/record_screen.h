@@ -70,6 +70,11 @@ typedef struct imk_screen {
     double clipped_gain;   /**< how far a slow change, smaller than the noise, shows: the share of
                               samples between these values */
     double clipped_misfit; /**< relative difference of the deviation from that of such noise */
+    bool interpolated; /**< the noise is stronger and weaker in a cycle of some samples, as between
+                          the samples of a slower sensor */
+    double sensor_rate[2]; /**< its rate over that of the log, 0 if the noise alternates from row to
+                              row; the second is 0, or another one if coarse steps hide which it is
+                            */
     double repeated;       /**< share of samples equal to the one before */
     double resolution;     /**< smallest step between values; 0 when none is detected */
     double deviation;      /**< of the samples about their mean */
@@ -81,6 +86,13 @@ typedef struct imk_screen {
     size_t step_place[IMK_SCREEN_STEPS]; /**< index of the first sample behind each, to 1/1024 of
                                             the record */
     double step_size[IMK_SCREEN_STEPS];
+    double possible_step; /**< the likeliest further change of the level, which is not significant;
+                             0: none is worth a look */
+    size_t possible_step_place;
+    double possible_step_square; /**< its size over its standard deviation, squared */
+
+    double cycle_amplitude; /**< of a level that goes up and down regularly; 0: it does not */
+    double cycle_period;    /**< [s] */
 
     /** Mean = level + warm_up_amplitude exp(-t/warm_up_time) */
     bool warm_up;

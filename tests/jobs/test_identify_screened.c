@@ -70,6 +70,7 @@ static void check_same(const imk_screen *a, const imk_screen *b)
     assert_int_equal(a->steps.first, b->steps.first);
     assert_true(a->warm_up == b->warm_up && a->heavy_tails == b->heavy_tails);
     assert_true(a->noise == b->noise && a->largest_step == b->largest_step);
+    assert_true(a->interpolated == b->interpolated && a->sensor_rate[0] == b->sensor_rate[0]);
     assert_true(a->clipped_deviation == b->clipped_deviation && a->core == b->core);
 }
 

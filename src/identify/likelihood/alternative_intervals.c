@@ -99,7 +99,7 @@ static unsigned others_of(const imki_fit *fit, const imk_identification *result)
 static unsigned uncertain_of(const imk_identification *result)
 {
     unsigned uncertain = 0;
-    for (int term = IMK_NOISE_BIAS_INSTABILITY; term < IMK_NOISE_TERMS; term++) {
+    for (int term = IMK_NOISE_WHITE; term < IMK_NOISE_TERMS; term++) {
         const imk_estimate *e = &result->term[term];
         if (e->present && e->lower <= 0 && e->upper >= 0)
             uncertain |= 1u << term;

@@ -172,7 +172,7 @@ static bool is_short(const imk_identification *result)
 }
 
 /* Known to no better than a factor of three up and down: filter, resonances or another term take
- * its place. */
+ * its place. White noise of which only another set of terms has less is ambiguous instead. */
 static bool is_undetermined(const imk_estimate *e)
 {
     return e->present && !(e->upper <= 9 * e->lower);
@@ -187,9 +187,11 @@ void imki_identify_intervals(imki_work *w, imk_identification *result)
     store_gauss_markovs(w, result, drop);
     if (is_short(result))
         result->verdict |= IMK_VERDICT_SHORT;
+    const bool white_alone = is_undetermined(&result->term[IMK_NOISE_WHITE]);
     imki_intervals_join(w, result, drop);
     imki_identify_widen(w, result);
-    if (is_undetermined(&result->term[IMK_NOISE_WHITE]) ||
+    const bool ambiguous = !white_alone && (result->ambiguous >> IMK_NOISE_WHITE & 1);
+    if ((is_undetermined(&result->term[IMK_NOISE_WHITE]) && !ambiguous) ||
         is_undetermined(&result->term[IMK_NOISE_QUANTIZATION]))
         result->verdict |= IMK_VERDICT_UNDETERMINED;
 }

@@ -37,13 +37,35 @@ static size_t peak_of(const imki_work *w, const imki_line *line)
     return peak;
 }
 
-/* Subtract the tones: a tone's skirts may make a line of sixteen coefficients of it, no more. */
+static double power_between(const imki_work *w, size_t from, size_t to)
+{
+    double power = 0;
+    for (size_t k = from; k <= to && k < w->n; k++)
+        power += w->coefficients[k] * w->coefficients[k];
+    return power;
+}
+
+/* Is a line a tone? The skirts of a strong one make a wide line of it, but five coefficients hold
+ * nine tenths of its power, many times that of those on either side. */
+static bool is_tone(const imki_work *w, const imki_line *line)
+{
+    const size_t peak = peak_of(w, line);
+    const double share = 0.6, skirt = 0.2;
+    if (line->last - line->first < 16)
+        return true; /* the fit will tell */
+    const double power = power_between(w, peak - 2, peak + 2);
+    return power > share * variance_of(w, line) * (double)w->n &&
+           power_between(w, peak - 8, peak - 3) < skirt * power &&
+           power_between(w, peak + 3, peak + 8) < skirt * power;
+}
+
+/* Subtract the tones. */
 static void remove_tones(imki_work *w, size_t count, const imki_line *lines,
                          imk_identification *result)
 {
     const double step_hz = 1 / (2 * (double)w->n * w->settings->dt);
     for (size_t i = 0; i < count; i++)
-        if (lines[i].last - lines[i].first < 16 && result->sinusoid_count < IMK_TERMS_MAX &&
+        if (is_tone(w, &lines[i]) && result->sinusoid_count < IMK_TERMS_MAX &&
             imki_sinusoid_remove(w->n, w->settings->dt, (double)peak_of(w, &lines[i]) * step_hz,
                                  variance_of(w, &lines[i]), w->samples,
                                  &result->sinusoid[result->sinusoid_count]))

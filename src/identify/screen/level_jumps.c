@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sudden lasting changes of the level, against the slow noise.
+/* Sudden lasting changes of the level, against the slow noise (level_noise.c).
  *
- * The cosine coefficients c_k of M means have the variance S_k = a + b/(2 s) + d (1/(4 s^2) - 1/6),
- * s = sin(pi k/2M), of white noise, flicker and random walk; the amounts are fitted by maximum
- * likelihood. Where an octave of frequencies has more power than this, S_k is raised to it. A jump
- * of one unit at border j has the coefficients
+ * A jump of one unit at border j has the cosine coefficients
  *
  *     h_k = -sqrt(2/M) sin(pi k j/M)/(2 s)
  *
@@ -22,107 +19,34 @@
 #include <math.h>
 #include <string.h>
 
-enum { NOISES = 3, ROUNDS = 200, LOCAL = 24, ENDS = 3 };
+enum { LOCAL = 24, ENDS = 3 };
 
 static const double pi = 3.14159265358979324;
 
 typedef struct jump_search {
+    imki_level_noise noise;
     size_t n;
-    double empty;                            /* share of the means that lie on lines */
-    double *mean;                            /* of the caller */
-    double *cosine;                          /* cos(2 pi i/M) */
-    double *flicker, *walk;                  /* spectra for amount 1 */
-    double *coefficient, *spectrum, *weight; /* c_k, S_k; h_k^2/S_k but for the sine */
-    double *kept;                            /* means before a jump is taken out */
-    double amount[NOISES];
-    void *transform;
-    size_t transform_size;
+    double empty;   /* share of the means that lie on lines */
+    double *mean;   /* of the caller */
+    double *cosine; /* cos(2 pi i/M) */
+    double *weight; /* h_k^2/S_k but for the sine */
+    double *kept;   /* means before a jump is taken out */
 } jump_search;
 
 size_t imki_jumps_room(size_t n)
 {
-    return 7 * n + (imk_cosine_workspace_size(n) + sizeof(double) - 1) / sizeof(double);
+    return 3 * n + imki_level_noise_room(n);
 }
 
 static void lay_out(jump_search *j, size_t n, double *room)
 {
-    double **const parts[] = {&j->cosine,   &j->flicker, &j->walk, &j->coefficient,
-                              &j->spectrum, &j->weight,  &j->kept};
+    double **const parts[] = {&j->cosine, &j->weight, &j->kept};
     j->n = n;
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++, room += n)
         *parts[i] = room;
-    j->transform = room;
-    j->transform_size = imk_cosine_workspace_size(n);
-    for (size_t i = 0; i < n; i++) {
-        const double s = imk_sin(pi * (double)i / (2 * (double)n));
+    imki_level_noise_begin(&j->noise, n, room);
+    for (size_t i = 0; i < n; i++)
         j->cosine[i] = imk_cos(2 * pi * (double)i / (double)n);
-        j->flicker[i] = i > 0 ? 1 / (2 * s) : 0;
-        j->walk[i] = i > 0 ? 1 / (4 * s * s) - 1.0 / 6 : 0;
-    }
-}
-
-/* Amounts to begin with: a third of the power each. */
-static void start(jump_search *j)
-{
-    double have[NOISES] = {0};
-    for (size_t k = 1; k < j->n; k++) {
-        const double square = j->coefficient[k] * j->coefficient[k];
-        have[0] += square;
-        have[1] += square / j->flicker[k];
-        have[2] += square / j->walk[k];
-    }
-    for (size_t i = 0; i < NOISES; i++)
-        j->amount[i] = have[i] / (double)(j->n - 1) / NOISES;
-}
-
-/* The amounts in turns, each times the ratio of what the likelihood wants more to what it wants
- * less [FEVOTTE2009]. @return the log-likelihood */
-static double fit(jump_search *j)
-{
-    double likelihood = 0;
-    start(j);
-    for (int round = 0; round <= ROUNDS; round++) {
-        double more[NOISES] = {0}, less[NOISES] = {0};
-        for (size_t k = 1; k < j->n; k++) {
-            const double power[NOISES] = {1, j->flicker[k], j->walk[k]};
-            double spectrum = 0;
-            for (size_t i = 0; i < NOISES; i++)
-                spectrum += j->amount[i] * power[i];
-            const double inverse = 1 / spectrum;
-            const double ratio = j->coefficient[k] * j->coefficient[k] * inverse;
-            j->spectrum[k] = spectrum;
-            likelihood -= round == ROUNDS ? 0.5 * (imk_ln(spectrum) + ratio) : 0;
-            for (size_t i = 0; i < NOISES; i++) {
-                more[i] += power[i] * ratio * inverse;
-                less[i] += power[i] * inverse;
-            }
-        }
-        for (size_t i = 0; round < ROUNDS && i < NOISES; i++)
-            j->amount[i] *= more[i] / less[i];
-    }
-    return likelihood;
-}
-
-/* Raise octaves that have more power than the fit. */
-static void raise(jump_search *j)
-{
-    for (size_t from = 1, to; from < j->n; from = to) {
-        to = from < 4 ? 4 : 2 * from;
-        to = to < j->n ? to : j->n;
-        double ratio = 0;
-        for (size_t k = from; k < to; k++)
-            ratio += j->coefficient[k] * j->coefficient[k] / j->spectrum[k];
-        ratio = fmax(1, ratio / (double)(to - from));
-        for (size_t k = from; k < to; k++)
-            j->spectrum[k] *= ratio;
-    }
-}
-
-static void transform(jump_search *j, const double *mean)
-{
-    memcpy(j->coefficient, mean, j->n * sizeof *mean);
-    (void)imk_cosine(j->n, j->coefficient, j->transform, j->transform_size); /* sized for it */
-    j->coefficient[0] = 0;
 }
 
 /* D of a border. */
@@ -141,7 +65,7 @@ static double information(const jump_search *j, size_t border)
  * noisier, a jump is less sure. Less than half as much again is chance. */
 static double local_noise(const jump_search *j, size_t border)
 {
-    double *sorted = j->coefficient; /* not needed any more */
+    double *sorted = j->noise.coefficient; /* not needed any more */
     const size_t from = border > LOCAL ? border - LOCAL : 1;
     const size_t to = border + LOCAL < j->n ? border + LOCAL : j->n;
     for (size_t i = from; i < to; i++)
@@ -163,12 +87,13 @@ static size_t search(jump_search *j, double *size, double *significance)
     double sum = 0;
     *significance = *size = 0;
     for (size_t k = 1; k < j->n; k++) {
-        j->weight[k] = (j->walk[k] + 1.0 / 6) / j->spectrum[k];
-        j->coefficient[k] /= j->spectrum[k];
+        j->weight[k] = (j->noise.walk[k] + 1.0 / 6) / j->noise.spectrum[k];
+        j->noise.coefficient[k] /= j->noise.spectrum[k];
     }
-    (void)imk_cosine_inverse(j->n, j->coefficient, j->transform, j->transform_size);
+    (void)imk_cosine_inverse(j->n, j->noise.coefficient, j->noise.transform,
+                             j->noise.transform_size);
     for (size_t border = 1; border + ENDS <= j->n; border++) {
-        sum -= j->coefficient[border - 1]; /* the sum of all is 0 */
+        sum -= j->noise.coefficient[border - 1]; /* the sum of all is 0 */
         if (border < ENDS || sum * sum <= 0)
             continue;
         const double d = information(j, border), z = fabs(sum) / sqrt(d);
@@ -207,57 +132,62 @@ static size_t entry_of(size_t count, const size_t *place, size_t border)
 static double judge(jump_search *j, size_t border, double *size)
 {
     double product = 0, d = 0;
-    raise(j);
-    transform(j, j->kept);
+    imki_level_noise_raise(&j->noise);
+    imki_level_noise_transform(&j->noise, j->kept);
     for (size_t k = 1; k < j->n; k++) {
         const double angle = pi * (double)k * (double)border / (double)j->n;
-        const double h = -sqrt(2 / (double)j->n) * imk_sin(angle) * j->flicker[k];
-        product += h * j->coefficient[k] / j->spectrum[k];
-        d += h * h / j->spectrum[k];
+        const double h = -sqrt(2 / (double)j->n) * imk_sin(angle) * j->noise.flicker[k];
+        product += h * j->noise.coefficient[k] / j->noise.spectrum[k];
+        d += h * h / j->noise.spectrum[k];
     }
     *size = product / d;
     return product * product / d;
 }
 
 /* Look for one more jump; it is taken out if its significance, a square, is above what is due.
- * @return the border, or 0; significance and size are set */
+ * @return the most likely border, or 0 if there is none worth a look; significance and size are set
+ */
 static size_t next_jump(jump_search *j, double due, double *square, double *size)
 {
-    const double promising = 3.5;
+    const double promising = 3;
     double z;
-    transform(j, j->mean);
-    const double without = fit(j);
-    raise(j);
+    imki_level_noise_transform(&j->noise, j->mean);
+    const double without = imki_level_noise_fit(&j->noise);
+    imki_level_noise_raise(&j->noise);
     const size_t border = search(j, size, &z);
     if (border == 0 || z < promising)
         return 0;
     const double local = local_noise(j, border);
     memcpy(j->kept, j->mean, j->n * sizeof *j->mean);
     take_out(j, border, *size);
-    transform(j, j->mean);
-    const double gain = fit(j) - without;
+    imki_level_noise_transform(&j->noise, j->mean);
+    const double gain = imki_level_noise_fit(&j->noise) - without;
     *square = fmin(2 * gain, judge(j, border, size)) * (1 - j->empty) / (local * local);
     memcpy(j->mean, j->kept, j->n * sizeof *j->mean);
-    if (!(*square > due))
-        return 0;
-    take_out(j, border, *size);
+    if (*square > due)
+        take_out(j, border, *size);
     return border;
 }
 
 size_t imki_jumps_find(size_t n, double *mean, double empty, double significance, double *room,
-                       size_t most, size_t *place, double *size, double *gain)
+                       size_t most, size_t *place, double *size, double *gain, imki_jump *possible)
 {
     jump_search work, *j = &work;
     const double z = -imk_normal_quantile(significance / (2 * (double)n));
     size_t count = 0;
     lay_out(j, n, room);
     j->mean = mean;
+    imki_level_noise_take_tones(&j->noise, mean);
     j->empty = empty;
     *gain = 0;
+    *possible = (imki_jump){0, 0, 0};
     for (size_t round = 0; round < 3 * most; round++) {
         double square, change;
         const size_t border = next_jump(j, z * z, &square, &change);
-        const size_t at = border > 0 ? entry_of(count, place, border) : most;
+        if (border > 0 && !(square > z * z))
+            *possible = (imki_jump){border, change, square};
+        const size_t at =
+            possible->place == 0 && border > 0 ? entry_of(count, place, border) : most;
         if (at == most)
             break;
         *gain = round == 0 ? 0.5 * square : *gain;

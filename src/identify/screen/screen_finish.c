@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-enum { LEVELS_MIN = 64, BATCHES_MIN = 10 };
+enum { LEVELS_MIN = 64, BATCHES_MIN = 10, CYCLE_LEVELS = 256, CYCLE_LEVELS_MIN = 100 };
 
 /* More outliers than this share of the samples, or half as many samples that are nearly outliers,
  * are the noise itself. */
@@ -141,11 +141,14 @@ static double find_jumps(imk_screener *s, unsigned without)
 {
     imk_screen *f = &s->found;
     double *mean = s->room, *temperature = mean + IMKI_SCREEN_LEVELS, empty, gain;
+    imki_jump possible;
     bool thermal;
     const size_t n = take_means(s, IMKI_SCREEN_LEVELS, mean, temperature, &thermal, &empty);
     const double length = (double)imki_levels_length(&s->levels, IMKI_SCREEN_LEVELS);
     f->steps = (imk_screen_count){0, 0, f->n};
     f->largest_step = 0;
+    f->possible_step = f->possible_step_square = 0;
+    f->possible_step_place = f->n;
     if (n < LEVELS_MIN)
         return 0;
     for (size_t i = 0; i < n; i++)
@@ -153,7 +156,10 @@ static double find_jumps(imk_screener *s, unsigned without)
                             thermal ? temperature[i] : 0);
     f->steps.count = f->steps.runs =
         imki_jumps_find(n, mean, empty, s->settings.significance, temperature + IMKI_SCREEN_LEVELS,
-                        IMK_SCREEN_STEPS, f->step_place, f->step_size, &gain);
+                        IMK_SCREEN_STEPS, f->step_place, f->step_size, &gain, &possible);
+    f->possible_step = possible.size;
+    f->possible_step_place = possible.place * (size_t)length;
+    f->possible_step_square = possible.square;
     for (size_t k = 0; k < f->steps.count; k++) {
         f->step_place[k] *= (size_t)length;
         if (fabs(f->step_size[k]) > fabs(f->largest_step)) {
@@ -162,6 +168,27 @@ static double find_jumps(imk_screener *s, unsigned without)
         }
     }
     return gain;
+}
+
+/* A cycle of the level, where it does not jump. */
+static void find_cycle(imk_screener *s)
+{
+    imk_screen *f = &s->found;
+    double *mean = s->room, *temperature = mean + CYCLE_LEVELS, empty;
+    imki_cycle cycle;
+    bool thermal;
+    const size_t n = take_means(s, CYCLE_LEVELS, mean, temperature, &thermal, &empty);
+    const double length = (double)imki_levels_length(&s->levels, CYCLE_LEVELS) * s->settings.dt;
+    if (n < CYCLE_LEVELS_MIN || f->steps.count > 0)
+        return;
+    for (size_t i = 0; i < n; i++)
+        mean[i] -= trend_at(f, IMK_SCREEN_TEMPERATURE | IMK_SCREEN_WARM_UP,
+                            ((double)i + 0.5) * length, thermal ? temperature[i] : 0);
+    if (!imki_cycle_find(n, mean, empty, s->settings.significance, temperature + CYCLE_LEVELS,
+                         &cycle))
+        return;
+    f->cycle_amplitude = cycle.amplitude;
+    f->cycle_period = (double)n * length / cycle.periods;
 }
 
 /* An exponential at the start and a jump explain each other in part: what gains more is right. */
@@ -193,7 +220,9 @@ void imki_screen_conclude(imk_screener *s)
     f->stuck.first = f->stuck.count > 0 ? f->stuck.first : f->n;
     find_saturation(s);
     find_tails(s);
+    f->interpolated = imki_cycles_find(&s->cycles, 0.1 * s->settings.significance, f->sensor_rate);
     find_slow(s);
+    find_cycle(s);
     /* The room holds the temperatures from here on, for imk_screener_trend(). */
     const imki_levels *l = &s->levels;
     double empty;

@@ -86,6 +86,7 @@ imk_status imk_screener_begin(const imk_screen_settings *settings, unsigned what
     s->last = s->run_value = (double)NAN;
     s->found.outliers.first = s->found.stuck.first = s->found.missing.first = SIZE_MAX;
     imki_levels_begin(&s->levels);
+    imki_cycles_begin(&s->cycles);
     *screener = s;
     return IMK_OK;
 }
@@ -192,6 +193,7 @@ static void decide(imk_screener *s)
     if (s->chunk % CORE_EVERY == 0)
         imki_screen_core(s);
     add_ends(s);
+    imki_cycles_add(&s->cycles, s->chunk, s->count[0], s->clean, s->step, s->value);
     imki_levels_add(&s->levels, s->count[0], s->clean, s->thermal ? s->warm[0] : NULL);
     s->chunk++;
 }

@@ -16,6 +16,7 @@ enum {
     IMKI_SCREEN_SHARES = 64,
     IMKI_SCREEN_BATCHES = 3,
     IMKI_SCREEN_ENDS = 8,
+    IMKI_CYCLE_SEGMENT = 1024,
     /* What a sample is marked with. */
     IMKI_MARK_STUCK = 1,
     IMKI_MARK_OUTLIER = 2
@@ -47,6 +48,15 @@ typedef struct imki_batches {
     double blocks, sum; /* of the batch being filled */
     double count, total, squares;
 } imki_batches;
+
+/* Cycles of the strength of the noise, a number to a segment of second differences. */
+typedef struct imki_cycles {
+    double roots[2 * IMKI_CYCLE_SEGMENT];
+    /* of the segments, sums of their coupling: each at most so large; as it is */
+    double sum[IMKI_CYCLE_SEGMENT / 2 + 1], whole[IMKI_CYCLE_SEGMENT / 2 + 1];
+    double segments;
+    double differences, straight, straight_by_chance; /* second differences, those that vanish */
+} imki_cycles;
 
 typedef struct imki_counting {
     size_t run;  /* of missing samples at the end of what was seen */
@@ -89,6 +99,7 @@ struct imk_screener {
     double shift, norm, mean; /* of the samples: Chan's update of mean and root sum of squares */
     imki_ends high, low;      /* low: of the negatives */
     imki_levels levels;
+    imki_cycles cycles;
     imk_screen found;
 };
 
@@ -135,17 +146,64 @@ size_t imki_levels_means(const imki_levels *levels, size_t most, const double *s
 /* Samples of a group. */
 size_t imki_levels_length(const imki_levels *levels, size_t most);
 
+/* screener_cycles.c */
+void imki_cycles_begin(imki_cycles *cycles);
+/* @param samples  of a chunk, NaN where missing @param step  between values; 0: not known
+ * @param room  6 segments of doubles */
+void imki_cycles_add(imki_cycles *cycles, size_t chunk, size_t count, const double *samples,
+                     double step, double *room);
+/* Has the noise a cycle? @param rate  set to the rate of the sensor over that of the log, 0 if the
+ * noise alternates; the second is 0, or another one if coarse steps hide which it is */
+bool imki_cycles_find(const imki_cycles *cycles, double significance, double rate[2]);
+
+/* level_noise.c */
+enum { IMKI_LEVEL_NOISES = 3 };
+typedef struct imki_level_noise {
+    size_t n;
+    double *flicker, *walk;           /* spectra for amount 1 */
+    double *coefficient, *spectrum;   /* c_k, S_k */
+    double amount[IMKI_LEVEL_NOISES]; /* of white noise, flicker, walk */
+    void *transform;
+    size_t transform_size;
+} imki_level_noise;
+/* Begin with n means. @param room  imki_level_noise_room(n) doubles */
+size_t imki_level_noise_room(size_t n);
+void imki_level_noise_begin(imki_level_noise *noise, size_t n, double *room);
+/* Coefficients of the means; amounts and spectrum of the coefficients, @return the log-likelihood;
+ * the spectrum raised to octaves of more power. */
+void imki_level_noise_transform(imki_level_noise *noise, const double *mean);
+/* Take steady tones out of the means, four at most. */
+void imki_level_noise_take_tones(imki_level_noise *noise, double *mean);
+double imki_level_noise_fit(imki_level_noise *noise);
+void imki_level_noise_raise(imki_level_noise *noise);
+
+/* level_cycle.c */
+/* Most likely cycle of the level among n means; tones are taken out of them.
+ * @param room  imki_cycle_room(n) doubles @return whether it is significant */
+typedef struct imki_cycle {
+    double periods, amplitude; /* periods in the record */
+    double square; /* without a cycle chi-square with two degrees of freedom, but for the search */
+} imki_cycle;
+size_t imki_cycle_room(size_t n);
+bool imki_cycle_find(size_t n, double *mean, double empty, double significance, double *room,
+                     imki_cycle *cycle);
+
 /* level_jumps.c */
+typedef struct imki_jump {
+    size_t place; /* first mean behind it; 0: none */
+    double size, square;
+} imki_jump;
 /* Most likely sudden changes among n means, 64 <= n <= IMKI_SCREEN_LEVELS, each significant beside
  * those before; they are subtracted from the means.
  * @param empty    share of the means that are no measurements
  * @param room     memory, imki_jumps_room(n) doubles
  * @param most     places in `place` (first mean behind the jump) and `size`
  * @param gain     log-likelihood that the first one is worth; 0 without one
+ * @param possible  the most likely one that is not significant
  * @return how many */
 size_t imki_jumps_room(size_t n);
 size_t imki_jumps_find(size_t n, double *mean, double empty, double significance, double *room,
-                       size_t most, size_t *place, double *size, double *gain);
+                       size_t most, size_t *place, double *size, double *gain, imki_jump *possible);
 
 /* clipped_normal.c */
 /* A normal distribution of which everything beyond two limits is put onto them. */

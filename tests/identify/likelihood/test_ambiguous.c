@@ -291,8 +291,8 @@ static void test_filter_and_resonance(void **state)
     CHECK_CLOSE(sum, 1, 0.015); /* the mean scatters by 0.4 % */
 }
 
-/* White noise far below quantization, present or not by chance: a doubt if and only if the interval
- * of what is called present spans a factor of nine. */
+/* White noise far below quantization, present or not by chance: a doubt or ambiguous if and only if
+ * the interval of what is called present spans a factor of nine. */
 static void test_undetermined(void **state)
 {
     (void)state;
@@ -304,15 +304,35 @@ static void test_undetermined(void **state)
         for (int term = IMK_NOISE_QUANTIZATION; term <= IMK_NOISE_WHITE; term++)
             wide =
                 wide || (r.term[term].present && !(r.term[term].upper <= 9 * r.term[term].lower));
-        assert_int_equal((r.verdict & IMK_VERDICT_UNDETERMINED) != 0, wide);
-        doubts += wide;
+        const bool doubt = r.verdict & IMK_VERDICT_UNDETERMINED;
+        assert_true(wide ? doubt || (r.ambiguous >> IMK_NOISE_WHITE & 1) : !doubt);
+        doubts += doubt;
     }
     assert_true(doubts > 0);
+}
+
+/* White noise that quantization hides above a quarter of a hertz: where Gauss-Markov
+ * noise can take its place this is ambiguous, as of the other terms, and no doubt. */
+static void test_hidden_white_noise(void **state)
+{
+    (void)state;
+    const truth t = {.quantization = 0.6, .white = 1, .bias_instability = 0.6};
+    size_t ambiguous = 0;
+    for (uint64_t seed = 1; seed <= 5 * RECORDS; seed++) {
+        const imk_identification r = identify(&t, seed);
+        const imk_estimate *n = &r.term[IMK_NOISE_WHITE];
+        ambiguous += n->lower <= 0;
+        assert_true(n->present && n->upper < 1.5);
+        assert_false(r.verdict & IMK_VERDICT_UNDETERMINED);
+        assert_int_equal(r.ambiguous >> IMK_NOISE_WHITE & 1, n->lower <= 0);
+    }
+    assert_true(ambiguous > 0);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_hidden_white_noise),
         cmocka_unit_test(test_ramp_or_walk),
         cmocka_unit_test(test_flicker_or_gauss_markov),
         cmocka_unit_test(test_flicker_or_two_gauss_markov),

@@ -270,6 +270,24 @@ static void test_shapes(void **state)
     assert_true(r.five_terms_from > 0.05);
 }
 
+/* The skirts of a strong slow tone make a line of a hundred coefficients of it: it is a tone still,
+ * and not a resonance. */
+static void test_strong_slow_tone(void **state)
+{
+    (void)state;
+    static const double frequencies[] = {0.0564, 0.5641, 1.6923};
+    for (size_t k = 0; k < 3; k++) {
+        const truth t = {.white = 0.1, .bias_instability = 0.05, .sinusoid = {1, frequencies[k]}};
+        const imk_identification r = identify_truth(&t, 180000, 0.01, 5, k);
+        assert_int_equal(r.sinusoid_count, 1);
+        assert_int_equal(r.resonance_count, 0);
+        /* by white noise sigmas of 1.5e-6 Hz and 0.0033; flicker noise doubles them at the first */
+        CHECK_CLOSE(r.sinusoid[0].frequency, frequencies[k], 1.5e-5);
+        CHECK_CLOSE(r.sinusoid[0].amplitude, 1, 0.03);
+        assert_false(r.verdict & IMK_VERDICT_MISFIT);
+    }
+}
+
 /* Filters well inside the band, where white noise looks like slow noise to a fit without a filter.
  */
 static void test_strong_filters(void **state)
@@ -473,6 +491,7 @@ int main(void)
         cmocka_unit_test(test_fast_gauss_markov),
         cmocka_unit_test(test_ramp),
         cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_strong_slow_tone),
         cmocka_unit_test(test_strong_filters),
         cmocka_unit_test(test_scale_and_offset),
         cmocka_unit_test(test_expected_variance),

@@ -101,6 +101,8 @@ static void check_same(const imk_screen *a, const imk_screen *b)
     assert_true(a->outlier_threshold == b->outlier_threshold);
     assert_true(a->temperature_slope == b->temperature_slope);
     assert_true(a->warm_up_probability == b->warm_up_probability);
+    assert_true(a->interpolated == b->interpolated);
+    assert_true(a->sensor_rate[0] == b->sensor_rate[0]);
     assert_memory_equal(a->step_place, b->step_place, a->steps.count * sizeof *a->step_place);
     assert_memory_equal(a->step_size, b->step_size, a->steps.count * sizeof *a->step_size);
 }

@@ -151,6 +151,25 @@ static bool find_saturated(const imk_identify_log *log, size_t channel, imki_tex
     return s->saturated.count > 0;
 }
 
+/* Held samples have a cycle, too, and are told by the rows. */
+static bool find_interpolated(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    for (size_t k = 0; k < log->findings.count; k++)
+        if (strcmp(log->findings.item[k].code, "stamps:held") == 0)
+            return false;
+    imki_text_add(detail, "from about %.3g Hz", s->sensor_rate[0] / log->record.dt);
+    if (s->sensor_rate[1] > 0)
+        imki_text_add(detail, " or %.3g Hz", s->sensor_rate[1] / log->record.dt);
+    return s->interpolated && s->sensor_rate[0] > 0;
+}
+
+static bool find_alternating(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    (void)detail;
+    return log->screen[channel].interpolated && !(log->screen[channel].sensor_rate[0] > 0);
+}
+
 static bool find_warm_up(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_screen *s = &log->screen[channel];
@@ -180,6 +199,32 @@ static bool find_steps(const imk_identify_log *log, size_t channel, imki_text *d
     imki_text_add(detail, "%zu, the largest %.3g %s at %.5g s", s->steps.count,
                   s->largest_step / unit.scale, unit.text, (double)s->steps.first * log->record.dt);
     return s->steps.count > 0;
+}
+
+/* A change of the level that is not significant, but which chance alone shows in one of ten
+ * channels at most, beside slow terms that would hold it as noise. */
+static bool find_possible_step(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const double worth_telling = 14;
+    const imk_screen *s = &log->screen[channel];
+    const imk_identification *r = &log->result[channel];
+    const imk_unit unit = unit_for(log, channel, s->possible_step);
+    bool slow = false;
+    for (int term = IMK_NOISE_BIAS_INSTABILITY; term <= IMK_NOISE_RAMP; term++)
+        slow = slow || r->term[term].present;
+    imki_text_add(detail, "%.3g %s at %.5g s", s->possible_step / unit.scale, unit.text,
+                  (double)s->possible_step_place * log->record.dt);
+    return (slow || r->gauss_markov_count > 0) && s->steps.count == 0 &&
+           s->possible_step_square > worth_telling;
+}
+
+static bool find_cycle(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    const imk_unit unit = unit_for(log, channel, s->cycle_amplitude);
+    imki_text_add(detail, "%.3g %s, period %.3g s", s->cycle_amplitude / unit.scale, unit.text,
+                  s->cycle_period);
+    return s->cycle_amplitude > 0;
 }
 
 /* Samples that were taken out do not count: other messages report them. */
@@ -367,6 +412,16 @@ static const struct concern {
      "samples at the end of the range; the values are those of normal noise before it was cut off "
      "there, and their intervals allow for that assumption",
      "samples at the end of the range, kept; the values are too low by these factors"},
+    {0, find_interpolated, 0, IMK_FINDING_WARNING, "interpolated",
+     "the log looks interpolated: its noise is stronger and weaker in a cycle, as between the "
+     "samples of a slower sensor, if no interference modulates it; interpolation takes away noise "
+     "at short averaging times, so white noise, quantization, filter and resonances are not the "
+     "sensor's; log the samples of the sensor themselves",
+     NULL},
+    {0, find_alternating, 0, IMK_FINDING_WARNING, "alternating",
+     "the noise is stronger in every other row, as if two sensors or two converters wrote the log "
+     "in turn; log them apart, because no stationary noise describes both",
+     NULL},
     {0, find_warm_up, IMK_SCREEN_WARM_UP, IMK_FINDING_NOTE, "warm_up_removed",
      "a warm-up at the start, subtracted", "a warm-up at the start, kept"},
     {0, find_temperature, IMK_SCREEN_TEMPERATURE, IMK_FINDING_NOTE, "temperature",
@@ -380,6 +435,14 @@ static const struct concern {
     {0, find_steps, 0, IMK_FINDING_WARNING, "steps",
      "the level jumps: the sensor was touched, or its range or filter was changed; the slow terms "
      "include the jump as noise",
+     NULL},
+    {0, find_cycle, 0, IMK_FINDING_WARNING, "cycle",
+     "the level goes up and down regularly, as with the temperature of a room; the slow terms "
+     "include it as noise; record again at a constant temperature, or log the temperature",
+     NULL},
+    {0, find_possible_step, 0, IMK_FINDING_NOTE, "possible_step",
+     "a change of the level explains a part of the slow noise about as well; bias instability, "
+     "random walk, ramp and Gauss-Markov noise may include it, and this record cannot tell",
      NULL},
     {0, find_missing, 0, IMK_FINDING_NOTE, "missing",
      "samples are missing; the estimate uses those that are there, and its intervals allow for "
@@ -549,10 +612,19 @@ static void assess_five_terms(imk_verdict *v, const imk_identify_log *log)
         imki_verdict_about(v, &log->record, channels);
 }
 
+static bool has_times(const imk_even_record *record)
+{
+    for (size_t c = 0; c < record->log.column_count; c++)
+        if (record->log.column[c].quantity == IMK_QUANTITY_TIME)
+            return true;
+    return false;
+}
+
 static void assess_length(imk_verdict *v, const imk_identify_log *log)
 {
     const imk_even_record *record = &log->record;
     const imki_words length = imki_duration(record->dt * (double)record->rows);
+    const char *rate = has_times(record) ? "" : " as stated, which no log can test";
     double from = 0, to = (double)INFINITY;
     for (size_t c = 0; c < record->count; c++)
         if (isfinite(log->result[c].valid_from)) {
@@ -562,11 +634,11 @@ static void assess_length(imk_verdict *v, const imk_identify_log *log)
     if (from > 0)
         imki_verdict_add(
             v, imk_verdict_warns(v) ? IMK_FINDING_NOTE : IMK_FINDING_GOOD, "length",
-            "%s at %.6g Hz: the model is valid for averaging times from %.3g s to %.3g s.",
-            length.text, 1 / record->dt, from, to);
+            "%s at %.6g Hz%s: the model is valid for averaging times from %.3g s to %.3g s.",
+            length.text, 1 / record->dt, rate, from, to);
     else
-        imki_verdict_add(v, IMK_FINDING_NOTE, "length", "%s at %.6g Hz.", length.text,
-                         1 / record->dt);
+        imki_verdict_add(v, IMK_FINDING_NOTE, "length", "%s at %.6g Hz%s.", length.text,
+                         1 / record->dt, rate);
 }
 
 /* Findings of the job itself. For a curve, only the quality of the fit is known. */

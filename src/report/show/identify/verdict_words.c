@@ -17,11 +17,17 @@ static const struct words {
     const char *title;  /* NULL: the text of the message is short enough */
 } words[] = {
     {"steps", "the slow terms of %s include jumps of the level", "Jumps of the level: %s."},
+    {"cycle", "the slow terms of %s include a regular cycle of the level",
+     "A level that goes up and down: %s."},
     {"coarse", "the output step is too coarse for the white noise of %s",
      "An output step coarser than the noise: %s."},
     {"saturated", "samples stick at the end of the range in %s",
      "Samples at an extreme value: %s."},
     {"frozen", "samples are repeated in %s, so that the true rate is lower", "Repeats: %s."},
+    {"interpolated", "%s look interpolated from a slower sensor, so that noise is missing",
+     "Interpolated from a slower sensor: %s."},
+    {"alternating", "the noise of %s alternates from row to row",
+     "Noise that alternates from row to row: %s."},
     {"warm_up", "the slow terms of %s include a start that drifts differently",
      "A start that drifts differently: %s."},
     {"misfit", "the model does not describe %s at all averaging times",
@@ -56,6 +62,7 @@ static const struct words {
     {"angle_noise", NULL, "White noise of the angle, not rounding: %s."},
     {"ambiguous", NULL, "Terms that the record cannot tell apart: %s."},
     {"walk_or_drift", NULL, "A walk or ramp that may be jumps or a drift: %s."},
+    {"possible_step", NULL, "Slow terms that may include a change of the level: %s."},
     {"stuck", NULL, "Stuck samples, left out: %s."},
     {"at_limit", NULL, "Samples at the end of the range, allowed for: %s."},
     {"warm_up_removed", NULL, "A warm-up at the start, subtracted: %s."},
@@ -190,6 +197,9 @@ const char *imk_identify_sentence(const imk_verdict *v)
     const imk_usability usability = imk_verdict_usability(v);
     const imk_finding_level level =
         usability == IMK_NOT_USABLE ? IMK_FINDING_FAILURE : IMK_FINDING_WARNING;
+    if (usability == IMK_USABLE && (has_code(v, "walk_or_drift") || has_code(v, "possible_step")))
+        return "Usable: no test found a fault, but slow terms may be jumps or a drift, which the "
+               "record cannot tell.";
     if (usability == IMK_USABLE)
         return has_code(v, "short") ? "Usable for the white noise: no test found a fault, but the "
                                       "record is too short "
