@@ -169,11 +169,14 @@ static int procedure_of(const char *name, size_t length, session *b, size_t log)
         return -1;
     }
     const char *nearest = command_nearest(given, IMK_PROCEDURES + 1, names);
-    return command_misused("--procedure %s: there is no such procedure%s%s%s; there are "
-                           "multiposition, sixposition, ferraris, rate-table, tumble, centrifuge, "
-                           "spin, thermal, turns and repeatability",
+    char all[200] = "";
+    for (size_t p = 0, used = 0; p < IMK_PROCEDURES; p++)
+        used +=
+            (size_t)snprintf(all + used, sizeof all - used, "%s%s", p > 0 ? ", " : "", names[p]);
+    return command_misused("--procedure %s: there is no such procedure%s%s%s; there are %s and "
+                           "repeatability",
                            given, nearest ? " (did you mean " : "", nearest ? nearest : "",
-                           nearest ? "?)" : "");
+                           nearest ? "?)" : "", all);
 }
 
 /* One for all logs, or one for each. */
