@@ -61,8 +61,10 @@ static const struct words {
     {"gaussian", NULL, "White noise with heavier tails than Gaussian: %s."},
     {"angle_noise", NULL, "White noise of the angle, not rounding: %s."},
     {"ambiguous", NULL, "Terms that the record cannot tell apart: %s."},
-    {"walk_or_drift", NULL, "A walk or ramp that may be jumps or a drift: %s."},
-    {"possible_step", NULL, "Slow terms that may include a change of the level: %s."},
+    {"walk_or_drift", "a walk or ramp of %s may be jumps or a drift",
+     "A walk or ramp that may be jumps or a drift: %s."},
+    {"possible_step", "the level of %s may have changed",
+     "Slow terms that may include a change of the level: %s."},
     {"stuck", NULL, "Stuck samples, left out: %s."},
     {"at_limit", NULL, "Samples at the end of the range, allowed for: %s."},
     {"warm_up_removed", NULL, "A warm-up at the start, subtracted: %s."},
@@ -191,20 +193,34 @@ static bool has_code(const imk_verdict *v, const char *code)
     return false;
 }
 
+/* No doubt: what the record leaves open of the slow terms. */
+static const char *usable(const imk_verdict *v)
+{
+    const char *open = NULL;
+    for (size_t k = 0; k < v->count; k++) {
+        const imk_message *m = &v->message[k];
+        if (m->clause &&
+            (strcmp(m->code, "walk_or_drift") == 0 || strcmp(m->code, "possible_step") == 0))
+            open = open ? imk_result_key(v->result, "%s, and %s", open, m->clause) : m->clause;
+    }
+    if (open)
+        return imk_result_key(v->result,
+                              "Usable for the white noise: no test found a fault, but %s; the "
+                              "record cannot tell.",
+                              open);
+    return has_code(v, "short") ? "Usable for the white noise: no test found a fault, but the "
+                                  "record is too short for some slow terms, which are bounded."
+                                : "Usable: no test found a fault.";
+}
+
 const char *imk_identify_sentence(const imk_verdict *v)
 {
     static const char *const grades[] = {"Usable", "Usable with care", "Not usable"};
     const imk_usability usability = imk_verdict_usability(v);
     const imk_finding_level level =
         usability == IMK_NOT_USABLE ? IMK_FINDING_FAILURE : IMK_FINDING_WARNING;
-    if (usability == IMK_USABLE && (has_code(v, "walk_or_drift") || has_code(v, "possible_step")))
-        return "Usable: no test found a fault, but slow terms may be jumps or a drift, which the "
-               "record cannot tell.";
     if (usability == IMK_USABLE)
-        return has_code(v, "short") ? "Usable for the white noise: no test found a fault, but the "
-                                      "record is too short "
-                                      "for some slow terms, which are bounded."
-                                    : "Usable: no test found a fault.";
+        return usable(v);
     const char *text = imk_result_key(v->result, "%s", grades[usability]), *last = NULL;
     size_t told = 0, left = 0;
     for (size_t k = 0; k < v->count; k++) {
