@@ -288,6 +288,11 @@ def interpolated(record, rng, strength):
     record.time = at * record.dt
 
 
+def alternating(record, rng, strength):
+    """Every second row is of another sensor, with `strength` times the noise."""
+    _white_factor(record, rng, np.where(np.arange(record.rows) % 2 == 0, 1, strength))
+
+
 def clock_back(record, rng, strength):
     record.time[int(rng.uniform(0.3, 0.7) * record.rows):] -= strength
 
@@ -363,6 +368,8 @@ FAULTS = [
           "logged faster than the sensor measures"),
     Fault("interpolated", "3", "nb_30min", (1.1, 1.5, 2), "rate x", interpolated,
           "interpolated to a higher rate"),
+    Fault("alternating", "3", "nb_30min", (1.1, 1.5, 3), "noise x", alternating,
+          "rows of two sensors in turn"),
     Fault("clock_back", "3", "nb_30min", (0.05, 2, 600), "s", clock_back, "the clock jumps back"),
     Fault("clock_forward", "3", "nb_30min", (1, 60, 600), "s", clock_forward,
           "the clock jumps ahead", undecidable="missing rows look the same", says="missing"),

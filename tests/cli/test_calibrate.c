@@ -294,8 +294,8 @@ static void wrong_usage_is_explained(void **state)
     check_message("$I calibrate rest.csv -p multiposistion", 2,
                   "imukit calibrate: error: --procedure multiposistion: there is no such procedure "
                   "(did you mean multiposition?); there are multiposition, sixposition, ferraris, "
-                  "rate-table, tumble, centrifuge, spin, thermal, turns and repeatability\n" TRY(
-                      "calibrate"));
+                  "rate-table, tumble, centrifuge, spin, thermal, turns, magnetometer and "
+                  "repeatability\n" TRY("calibrate"));
     check_message("$I calibrate rest.csv -p multiposition,thermal", 2,
                   "imukit calibrate: error: --procedure multiposition,thermal: 2 procedures for 1 "
                   "log; give one for all, or one for each\n" TRY("calibrate"));

@@ -36,8 +36,9 @@ enum {
 static const double large = 8;
 /* One segment alone is no evidence: an exponential number is above this with a chance of 1e-7. */
 static const double most = 16;
-/* Less is a modulation of the noise by a few per cent, which moves no estimate. */
-static const double matters = 3;
+/* Less is a modulation of the noise by some per cent, which an interpolation exceeds by far. Rows
+ * of two sensors in turn may differ by less and move white noise by more than its interval. */
+static const double matters = 3, matters_alternating = 1.3;
 /* Share of the second differences of a segment that may be missing. */
 static const double missing_most = 0.05;
 
@@ -213,7 +214,8 @@ bool imki_cycles_find(const imki_cycles *c, double significance, double rate[2])
     const double limit = imk_chi_square_quantile(1 - chance, n) / n;
     const double limit_real = imk_chi_square_quantile(1 - chance, n / 2) / (n / 2);
     for (size_t k = LEAST; k <= HALF; k++)
-        any = any || prominence(c, k) > fmax(matters, k + 3 > HALF ? limit_real : limit);
+        any = any || prominence(c, k) > (k + 3 > HALF ? fmax(matters_alternating, limit_real)
+                                                      : fmax(matters, limit));
     if (any)
         find_rates(c, rate);
     return any;

@@ -169,6 +169,8 @@ static void test_flicker_or_gauss_markov(void **state)
 static void test_flicker_or_two_gauss_markov(void **state)
 {
     (void)state;
+    if (check_quick()) /* the statistics are others' */
+        skip();
     const truth t = {.white = 1, .slow = {1.2, 0.5}, .slower = {0.7, 15}};
     size_t called = 0, wrong = 0;
     for (uint64_t seed = 1; seed <= 4 * RECORDS; seed++) {
@@ -204,6 +206,8 @@ static void test_widest_resonance(void **state)
 static void test_hidden_quantization(void **state)
 {
     (void)state;
+    if (check_quick()) /* the statistics are others' */
+        skip();
     const truth t = {.white = 1, .bias_instability = 1, .angle_step = 0.036, .mean = 2};
     size_t hidden = 0, wrong = 0;
     for (uint64_t seed = 1; seed <= 5 * RECORDS; seed++) {
@@ -316,6 +320,8 @@ static void test_undetermined(void **state)
 static void test_hidden_white_noise(void **state)
 {
     (void)state;
+    if (check_quick()) /* the statistics are others' */
+        skip();
     const truth t = {.quantization = 0.6, .white = 1, .bias_instability = 0.6};
     size_t ambiguous = 0;
     for (uint64_t seed = 1; seed <= 5 * RECORDS; seed++) {

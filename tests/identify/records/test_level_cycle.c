@@ -64,11 +64,11 @@ static void test_no_cycle(void **state)
 static void test_cycle(void **state)
 {
     (void)state;
-    const uint32_t runs = check_runs(20);
+    enum { RUNS = 20 };
     static const double periods[] = {3, 5.3, 12, 20.6};
     for (uint32_t k = 0; k < 4; k++) {
         uint32_t found = 0;
-        for (uint32_t run = 0; run < runs; run++) {
+        for (uint32_t run = 0; run < RUNS; run++) {
             imki_cycle cycle;
             make(1000 + run, M, 1, 0);
             for (size_t i = 0; i < M; i++)
@@ -79,7 +79,7 @@ static void test_cycle(void **state)
             CHECK_CLOSE(cycle.periods, periods[k], 0.25);
             CHECK_CLOSE(cycle.amplitude, 5, 2.5);
         }
-        assert_true(found >= 0.8 * runs);
+        assert_true(found >= 0.8 * RUNS);
     }
 }
 
