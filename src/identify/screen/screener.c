@@ -208,6 +208,7 @@ static void rotate(imk_screener *s)
     s->count[0] = s->count[1];
     s->count[1] = 0;
     s->chunk_repeats[0] = s->chunk_repeats[1];
+    s->chunk_whole[0] = s->chunk_whole[1];
     s->chunk_repeats[1] = 0;
 }
 

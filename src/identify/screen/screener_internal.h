@@ -82,7 +82,8 @@ struct imk_screener {
     /* Repeats: shares of stretches of 512 samples, the last ones in turn. */
     double share[IMKI_SCREEN_SHARES];
     size_t shares, repeats, compared, chunk_repeats[2];
-    double last; /* sample */
+    bool chunk_whole[2]; /* nothing is missing */
+    double last;         /* sample */
     /* The run of one value that the last chunk ended with. */
     double run_value;
     size_t run_length;

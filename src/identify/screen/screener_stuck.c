@@ -64,6 +64,7 @@ void imki_screen_repeats(imk_screener *s, int at, bool whole)
         keep_share(s, repeats, compared);
     }
     s->chunk_repeats[at] = s->repeats - before;
+    s->chunk_whole[at] = whole;
 }
 
 size_t imki_screen_stuck_limit(const imk_screener *s)
@@ -154,11 +155,33 @@ static void keep_last_run(imk_screener *s)
     }
 }
 
+/* Can the chunk hold a run of more than the limit? Where nothing is missing, such a run inside it
+ * holds one of every limit/2 samples and as many after that one. */
+static bool may_be_stuck(const imk_screener *s, size_t limit)
+{
+    const double *x = s->raw[0];
+    const size_t count = s->count[0], stride = limit / 2;
+    const bool begins = s->run_length > 0 && x[0] == s->run_value;
+    const bool ends = s->count[1] > 0 && x[count - 1] == s->raw[1][0];
+    if (s->run_length + s->chunk_repeats[0] + s->chunk_repeats[1] < RUN_MIN)
+        return false;
+    if (begins || ends || !s->chunk_whole[0] || !s->chunk_whole[1] || stride >= count)
+        return true;
+    for (size_t i = 0; i + stride <= count; i += stride) {
+        size_t equal = 1;
+        while (equal < stride && x[i + equal] == x[i])
+            equal++;
+        if (equal == stride)
+            return true;
+    }
+    return false;
+}
+
 void imki_screen_stuck(imk_screener *s)
 {
     const size_t limit = imki_screen_stuck_limit(s);
     s->found.stuck_limit = limit;
-    if (s->run_length + s->chunk_repeats[0] + s->chunk_repeats[1] < RUN_MIN && !s->run_stuck) {
+    if (!s->run_stuck && !may_be_stuck(s, limit)) {
         keep_last_run(s);
         return;
     }

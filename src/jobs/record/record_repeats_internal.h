@@ -11,6 +11,7 @@
 typedef struct imki_repeat_counts {
     int column[IMK_LOG_COLUMNS_MAX];
     size_t channels, rows, all[2], equal[IMK_LOG_COLUMNS_MAX][2];
+    size_t stretches; /* of a long log, counted or not */
     /* of windows of rows: number, and sums of the repeats in one and of their squares */
     double windows, sum, square_sum;
     bool differ[IMK_LOG_COLUMNS_MAX][IMK_LOG_COLUMNS_MAX]; /* of channels, the earlier one first */
