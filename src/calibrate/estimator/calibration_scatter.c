@@ -195,28 +195,45 @@ static double combine(const opinions *o, size_t p, double sigma)
     return imk_exp(ln2 * most);
 }
 
-/* What the forms say of the parameters of a sensor; the solution is the chosen one's. */
+/* Does the solution have this form? */
+static bool is_form(const form *f, int sensor, bool by_axis, bool added)
+{
+    return f->by_axis[sensor] == by_axis && (f->added[sensor] > 0.0) == added;
+}
+
+/* Variances and degrees by the form solved last, after `o->count` others. */
+static void keep_opinion(imki_estimator *e, const imki_fit *fit, opinions *o)
+{
+    imki_freedoms(e, fit, o->variance[o->count], o->freedom[o->count]);
+    for (size_t p = 0; p < e->parameters; p++) {
+        const double apart = e->now.global[p] - e->best.global[p];
+        o->variance[o->count][p] += apart * apart;
+    }
+    o->count++;
+}
+
+/* What the forms say of the parameters of a sensor; the solution is the chosen one's. Sigmas that
+ * are no smaller than the scatter leave nothing to be added. */
 static void ask_forms(imki_estimator *e, int sensor, opinions *o)
 {
     const form chosen = form_of(e);
+    bool excess = true;
     o->count = 0;
-    for (int way = 0; way < FORMS; way++) {
+    for (int way = 0; way < FORMS && (way < 2 || excess); way++) {
         const bool by_axis = way & 1, added = way & 2;
         imki_fit fit;
         take_form(e, &chosen);
         imki_point_copy(e, &e->best, &e->now);
-        if (e->added[sensor] > 0.0 || e->by_axis[sensor])
+        if (!is_form(&chosen, sensor, false, false))
             for (int axis = 0; axis < IMK_AXES_MAX; axis++)
                 e->factor[imki_part_of(e, sensor, axis)] = 1.0;
-        o->deviance[o->count] = try_form(e, sensor, by_axis, added, &fit);
-        if (!(o->deviance[o->count] < HUGE_VAL))
+        const double reached = try_form(e, sensor, by_axis, added, &fit);
+        if (way == 0 && reached < HUGE_VAL)
+            excess = e->factor[imki_part_of(e, sensor, 0)] > least_excess;
+        if (!(reached < HUGE_VAL))
             continue;
-        imki_freedoms(e, &fit, o->variance[o->count], o->freedom[o->count]);
-        for (size_t p = 0; p < e->parameters; p++) {
-            const double apart = e->now.global[p] - e->best.global[p];
-            o->variance[o->count][p] += apart * apart;
-        }
-        o->count++;
+        o->deviance[o->count] = reached;
+        keep_opinion(e, &fit, o);
     }
     take_form(e, &chosen);
     imki_point_copy(e, &e->best, &e->now);
