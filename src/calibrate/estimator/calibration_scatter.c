@@ -302,7 +302,7 @@ imk_status imki_scatter_freedoms(imki_estimator *e, imki_fit *fit, double *freed
 {
     opinions o;
     bool asked = false, estimated[IMKI_PARTS];
-    double variance[IMK_CORRELATED_MAX];
+    double variance[IMK_CORRELATED_MAX] = {0.0};
     for (size_t p = 0; p < e->parameters; p++)
         variance[p] = e->normal.covariance[p * e->globals + p];
     ask_solution(e, fit, &o);
