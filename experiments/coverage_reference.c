@@ -46,8 +46,7 @@ static void run(size_t which, size_t benches, uint64_t seed, double bad)
         imk_error error;
         session_log(b, seed * 1000000 + i, bad);
         if (session_solve(b, &error) == IMK_OK) {
-            coverage_add(&count, &b->result, &b->truth, 0.95);
-            count.doubted += coverage_doubts(&b->calibration, &b->result);
+            coverage_take(&count, &b->calibration, &b->result, &b->truth);
             continue;
         }
         if (count.failed++ == 0)

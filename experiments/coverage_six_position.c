@@ -101,8 +101,7 @@ int main(int argc, char **argv)
         for (int n = 0; n < benches; n++) {
             imk_error error;
             if (session_run(b, &plans[i].session, plans[i].procedure, seed, (uint32_t)n, &error)) {
-                coverage_add(&count, &b->result, &b->truth, 0.95);
-                count.doubted += coverage_doubts(&b->calibration, &b->result);
+                coverage_take(&count, &b->calibration, &b->result, &b->truth);
             } else if (count.failed++ == 0) {
                 printf("bench %d: %s %s %s\n", n, imk_status_name(error.status), error.field,
                        error.expected);

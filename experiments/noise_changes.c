@@ -171,9 +171,12 @@ static bool assess(const kind *k, const room *r, tally *sum)
     imk_noise_changes changes;
     if (imk_screen_channel(&screening, n, r->x, &screen, r->workspace, r->size, NULL) != IMK_OK)
         return false;
-    imk_screen_apply(&screening, &screen,
-                     k->tails ? IMK_SCREEN_ALL & ~(unsigned)IMK_SCREEN_OUTLIERS : IMK_SCREEN_ALL, n,
-                     r->x);
+    const unsigned what =
+        k->tails ? IMK_SCREEN_ALL & ~(unsigned)IMK_SCREEN_OUTLIERS : IMK_SCREEN_ALL;
+    size_t lost;
+    if (imk_screen_apply(&screening, &screen, what, n, r->x, &lost, r->workspace, r->size, NULL) !=
+        IMK_OK)
+        return false;
     if (imk_identify_channel(&settings, n, r->x, &found, r->workspace, r->size, NULL) != IMK_OK)
         return false;
     imk_noise_map_begin(r->map);

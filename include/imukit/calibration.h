@@ -171,6 +171,9 @@ typedef struct imk_group_fit {
                                          another form better, a factor for each axis, an added part
                                          for all axes, or one for each */
     double axis_added[IMK_AXES_MAX];  /**< [rad/s], [m/s^2] */
+    /** Root mean square of the sigmas stated of the readings of an axis [rad/s], [m/s^2]; 0: it has
+     *  none. */
+    double axis_noise[IMK_AXES_MAX];
     double rms; /**< root mean square of the residuals [rad/s], [m/s^2], [rad] */
 } imk_group_fit;
 

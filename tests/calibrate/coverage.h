@@ -16,6 +16,7 @@
 typedef struct coverage_count {
     size_t benches, failed; /* tests done; and refused or not solved */
     size_t doubted;         /* of those done: with a warning about scatter or placements */
+    size_t sure_held[IMK_CORRELATED_MAX]; /* interval holds the truth, in the other ones */
     size_t parameter_count;
     imk_model_parameter parameter[IMK_CORRELATED_MAX];
     size_t held[IMK_CORRELATED_MAX];   /* interval holds the truth */
@@ -25,22 +26,33 @@ typedef struct coverage_count {
 
 /* Count one result; `truth` is the model the bench was simulated with, run constants included, in
  * the frame of the result. */
-static inline void coverage_add(coverage_count *c, const imk_calibration_result *result,
-                                const imk_model *truth, double confidence)
+static inline void coverage_add_one(coverage_count *c, const imk_calibration_result *result,
+                                    const imk_model *truth, double confidence, bool doubted)
 {
     c->parameter_count = result->parameter_count;
     c->benches++;
+    c->doubted += doubted;
     for (size_t p = 0; p < result->parameter_count; p++) {
         const double error =
             result->value[p] - imk_model_parameter_get(truth, result->parameter[p]);
+        const bool held = fabs(error) <= imk_calibration_half_width(result, (int)p, confidence);
         c->parameter[p] = result->parameter[p];
-        c->held[p] += fabs(error) <= imk_calibration_half_width(result, (int)p, confidence);
+        c->held[p] += held;
+        c->sure_held[p] += held && !doubted;
         c->sum[p] += error / result->sigma[p];
         c->square[p] += error * error / (result->sigma[p] * result->sigma[p]);
     }
 }
 
-/* A warning that `imukit calibrate` prints about the scatter of this result. */
+/* Without a look at doubts. */
+static inline void coverage_add(coverage_count *c, const imk_calibration_result *result,
+                                const imk_model *truth, double confidence)
+{
+    coverage_add_one(c, result, truth, confidence, false);
+}
+
+/* A warning that `imukit calibrate` prints about the scatter of this result; of residuals below ten
+ * times the noise it prints a note. */
 static inline bool coverage_doubts(const imk_calibration *calibration,
                                    const imk_calibration_result *result)
 {
@@ -50,9 +62,16 @@ static inline bool coverage_doubts(const imk_calibration *calibration,
     bool doubts = p->degrees_of_freedom >= 1.0 &&
                   imk_gamma_upper(0.5 * p->degrees_of_freedom, 0.5 * p->chi_square) < 1e-3;
     for (size_t i = 0; i < count; i++)
-        doubts = doubts || found[i].kind == IMK_DIAGNOSTIC_RESIDUALS ||
+        doubts = doubts || (found[i].kind == IMK_DIAGNOSTIC_RESIDUALS && found[i].value > 100.0) ||
+                 found[i].kind == IMK_DIAGNOSTIC_UNEQUAL_AXES ||
                  found[i].kind == IMK_DIAGNOSTIC_OUTLIERS;
     return doubts;
+}
+
+static inline void coverage_take(coverage_count *c, const imk_calibration *calibration,
+                                 const imk_calibration_result *result, const imk_model *truth)
+{
+    coverage_add_one(c, result, truth, 0.95, coverage_doubts(calibration, result));
 }
 
 /* Per parameter: share held, bias in sigmas, root mean square in sigmas. */
@@ -84,12 +103,13 @@ static inline size_t coverage_least_held(size_t n, double share, double false_al
     return n;
 }
 
-/* What the share held says of 93 to 97 %: "" where it is within, or outside by chance only (three
- * standard deviations of a true share at the limit). */
+/* What the share held in the benches without a doubt says of 93 to 97 %: "" where it is within, or
+ * outside by chance only (three standard deviations of a true share at the limit). */
 static inline const char *coverage_verdict(const coverage_count *c, size_t p)
 {
-    const double chance = 3.0 * sqrt(0.95 * 0.05 / (double)c->benches);
-    const double share = coverage_share(c, p);
+    const double sure = (double)(c->benches - c->doubted);
+    const double chance = 3.0 * sqrt(0.95 * 0.05 / fmax(1.0, sure));
+    const double share = sure > 0.0 ? (double)c->sure_held[p] / sure : coverage_share(c, p);
     return share < 0.93 - chance   ? "  BELOW"
            : share > 0.97 + chance ? "  ABOVE"
            : share < 0.93          ? "  below, perhaps by chance"
@@ -108,8 +128,12 @@ static inline size_t coverage_print(const coverage_count *c, FILE *out)
         outside += strcmp(verdict, "  BELOW") == 0 || strcmp(verdict, "  ABOVE") == 0;
         within += verdict[0] == '\0';
         if (imk_model_parameter_name(c->parameter[p], name) == IMK_OK)
-            fprintf(out, "  %-40s held %6.2f %%   bias %+.3f sigma   rms %.3f sigma%s\n", name,
-                    100.0 * coverage_share(c, p), coverage_bias(c, p), coverage_rms(c, p), verdict);
+            fprintf(out,
+                    "  %-40s held %6.2f %%, without doubt %6.2f %%   bias %+.3f sigma   rms %.3f "
+                    "sigma%s\n",
+                    name, 100.0 * coverage_share(c, p),
+                    100.0 * (double)c->sure_held[p] / fmax(1.0, (double)(c->benches - c->doubted)),
+                    coverage_bias(c, p), coverage_rms(c, p), verdict);
     }
     const bool told = c->doubted >= 0.99 * (double)c->benches;
     fprintf(out,

@@ -296,8 +296,7 @@ static inline imk_status session_run(multiposition_session *b, uint64_t seed, ui
         status = session_solve(b);
     if (status == IMK_OK) {
         const imk_model truth = session_true_model(b);
-        coverage_add(count, &b->result, &truth, 0.95);
-        count->doubted += coverage_doubts(&b->calibration, &b->result);
+        coverage_take(count, &b->calibration, &b->result, &truth);
     } else {
         count->failed++;
     }

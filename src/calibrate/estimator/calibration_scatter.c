@@ -161,62 +161,122 @@ static void set_weights(opinions *o)
         o->weight[k] /= sum;
 }
 
-/* Probability that an error of parameter p is beyond +-x. */
-static double beyond(const opinions *o, size_t p, double x)
+static const double outside = 0.05;
+
+/* A function that falls through 0 between `low` and `high`. */
+typedef double (*imki_falling)(const void *of, double x);
+
+/* Where it is 0, by false position; an end that stays twice counts half. */
+static double find_zero(imki_falling f, const void *of, double low, double high)
 {
+    const double tolerance = 1e-6 * high;
+    double at_low = f(of, low), at_high = f(of, high), x = low;
+    if (!(at_low > 0.0))
+        return low;
+    if (!(at_high < 0.0))
+        return high;
+    for (int round = 0, side = 0; round < 60 && high - low > tolerance; round++) {
+        const double last = x;
+        x = low + (high - low) * at_low / (at_low - at_high);
+        const double at = f(of, x);
+        if (fabs(x - last) <= tolerance)
+            break;
+        if (at > 0.0) {
+            low = x;
+            at_low = at;
+            at_high *= side > 0 ? 0.5 : 1.0;
+            side = 1;
+        } else {
+            high = x;
+            at_high = at;
+            at_low *= side < 0 ? 0.5 : 1.0;
+            side = -1;
+        }
+    }
+    return x;
+}
+
+typedef struct parameter_opinions {
+    const opinions *of;
+    size_t p;
+} parameter_opinions;
+
+/* Logarithm of the probability that an error is beyond +-x, over 5 %. */
+static double beyond(const void *about, double x)
+{
+    const parameter_opinions *a = about;
+    const opinions *o = a->of;
     double sum = 0.0;
     for (size_t k = 0; k < o->count; k++)
-        sum += o->weight[k] * imk_f_upper(x * x / o->variance[k][p], 1.0, o->freedom[k][p]);
-    return sum;
+        sum += o->weight[k] * imk_f_upper(x * x / o->variance[k][a->p], 1.0, o->freedom[k][a->p]);
+    return sum > 0.0 ? imk_ln(sum / outside) : -700.0;
+}
+
+/* Student's quantile of 97.5 % is about linear in 1/(degrees of freedom): the logarithm of 5 % over
+ * the probability beyond +-x. */
+static double within(const void *x, double inverse_freedom)
+{
+    const double *bound = x;
+    return imk_ln(outside / imk_f_upper(*bound * *bound, 1.0, 1.0 / inverse_freedom));
 }
 
 /* The degrees of freedom with which Student's interval of 95 % about a sigma is the one that the
  * forms together hold. It is not narrower than the normal one: the sigma stays that of the
- * solution.
- */
+ * solution. */
 static double combine(const opinions *o, size_t p, double sigma)
 {
-    const double outside = 0.05, upper = 1.0 - 0.5 * outside, ln2 = 0.6931471805599453;
-    double low = imk_normal_quantile(upper) * sigma, high = low;
-    for (size_t k = 0; k < o->count; k++)
-        high = fmax(high, sqrt(o->variance[k][p]) * imk_student_quantile(upper, o->freedom[k][p]));
-    if (!(beyond(o, p, low) > outside * (1.0 + 1e-9))) /* rounding */
+    const double normal = imk_normal_quantile(1.0 - 0.5 * outside), least = 1e-9, most = 4.0;
+    const parameter_opinions about = {o, p};
+    double low = normal * sigma, high = 2.0 * low;
+    if (!(beyond(&about, low) > 1e-9)) /* rounding */
         return (double)INFINITY;
-    for (int halvings = 0; halvings < 40; halvings++) {
-        const double middle = 0.5 * (low + high);
-        *(beyond(o, p, middle) > outside ? &low : &high) = middle;
+    while (high < 1e6 * sigma && beyond(&about, high) > 0.0) {
+        low = high;
+        high *= 2.0;
     }
-    double least = -2.0, most = 30.0; /* logarithms of the degrees, to base 2 */
-    for (int halvings = 0; halvings < 40; halvings++) {
-        const double middle = 0.5 * (least + most);
-        const double quantile = imk_student_quantile(upper, imk_exp(ln2 * middle));
-        *(quantile > high / sigma ? &least : &most) = middle;
-    }
-    return imk_exp(ln2 * most);
+    const double bound = find_zero(beyond, &about, low, high) / sigma;
+    return 1.0 / find_zero(within, &bound, least, most);
 }
 
-/* What the forms say of the parameters of a sensor; the solution is the chosen one's. */
+/* Does the solution have this form? */
+static bool is_form(const form *f, int sensor, bool by_axis, bool added)
+{
+    return f->by_axis[sensor] == by_axis && (f->added[sensor] > 0.0) == added;
+}
+
+/* Variances and degrees by the form solved last, after `o->count` others. */
+static void keep_opinion(imki_estimator *e, const imki_fit *fit, opinions *o)
+{
+    imki_freedoms(e, fit, o->variance[o->count], o->freedom[o->count]);
+    for (size_t p = 0; p < e->parameters; p++) {
+        const double apart = e->now.global[p] - e->best.global[p];
+        o->variance[o->count][p] += apart * apart;
+    }
+    o->count++;
+}
+
+/* What the forms say of the parameters of a sensor; the solution is the chosen one's. Sigmas that
+ * are no smaller than the scatter leave nothing to be added. */
 static void ask_forms(imki_estimator *e, int sensor, opinions *o)
 {
     const form chosen = form_of(e);
+    bool excess = true;
     o->count = 0;
-    for (int way = 0; way < FORMS; way++) {
+    for (int way = 0; way < FORMS && (way < 2 || excess); way++) {
         const bool by_axis = way & 1, added = way & 2;
         imki_fit fit;
         take_form(e, &chosen);
         imki_point_copy(e, &e->best, &e->now);
-        if (e->added[sensor] > 0.0 || e->by_axis[sensor])
+        if (!is_form(&chosen, sensor, false, false))
             for (int axis = 0; axis < IMK_AXES_MAX; axis++)
                 e->factor[imki_part_of(e, sensor, axis)] = 1.0;
-        o->deviance[o->count] = try_form(e, sensor, by_axis, added, &fit);
-        if (!(o->deviance[o->count] < HUGE_VAL))
+        const double reached = try_form(e, sensor, by_axis, added, &fit);
+        if (way == 0 && reached < HUGE_VAL)
+            excess = e->factor[imki_part_of(e, sensor, 0)] > least_excess;
+        if (!(reached < HUGE_VAL))
             continue;
-        imki_freedoms(e, &fit, o->variance[o->count], o->freedom[o->count]);
-        for (size_t p = 0; p < e->parameters; p++) {
-            const double apart = e->now.global[p] - e->best.global[p];
-            o->variance[o->count][p] += apart * apart;
-        }
-        o->count++;
+        o->deviance[o->count] = reached;
+        keep_opinion(e, &fit, o);
     }
     take_form(e, &chosen);
     imki_point_copy(e, &e->best, &e->now);
@@ -242,7 +302,7 @@ imk_status imki_scatter_freedoms(imki_estimator *e, imki_fit *fit, double *freed
 {
     opinions o;
     bool asked = false, estimated[IMKI_PARTS];
-    double variance[IMK_CORRELATED_MAX];
+    double variance[IMK_CORRELATED_MAX] = {0.0};
     for (size_t p = 0; p < e->parameters; p++)
         variance[p] = e->normal.covariance[p * e->globals + p];
     ask_solution(e, fit, &o);

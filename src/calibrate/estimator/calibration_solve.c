@@ -201,6 +201,19 @@ static void fill_factors(const imki_estimator *e, const imki_fit *fit, int g, im
     group->factor = left > 1e-9 ? sqrt(square / left) : group->axis_factor[0];
 }
 
+static void fill_noise(const imki_estimator *e, int sensor, imk_group_fit *group)
+{
+    for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
+        double square = 0.0, count = 0.0;
+        for (size_t i = 0; i < e->observations; i++)
+            if (!isnan(e->reading[i][sensor][axis]) && e->weight[i] >= 1.0) {
+                square += e->sigma[i][sensor][axis] * e->sigma[i][sensor][axis];
+                count += 1.0;
+            }
+        group->axis_noise[axis] = count > 0.0 ? sqrt(square / count) : 0.0;
+    }
+}
+
 /* Fit of placements, or of terms, to what was assumed of them. */
 static void fill_assumed(const imki_estimator *e, const imki_fit *fit, int part,
                          imk_group_fit *group)
@@ -222,6 +235,8 @@ static void fill_groups(const imki_estimator *e, const imki_fit *fit,
         imk_group_fit *group = &result->group[g];
         const size_t used = group->count - group->refused;
         fill_factors(e, fit, g, group);
+        if (g != IMK_GROUP_TURN)
+            fill_noise(e, g == IMK_GROUP_GYRO ? IMK_GYRO : IMK_ACCEL, group);
         group->rms = used > 0 ? sqrt(group->rms / (double)used) : 0.0;
         result->chi_square += group->chi_square;
         result->degrees_of_freedom += group->degrees_of_freedom;

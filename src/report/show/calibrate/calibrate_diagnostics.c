@@ -65,6 +65,28 @@ static imki_calibrate_message unexplained(const imk_calibrate_log *b,
         groups[g].what, rms / unit.scale, unit.text, sqrt(d->value), d->value, groups[g].causes);
 }
 
+/* The noise of each axis, and what few residuals leave open. */
+static imki_calibrate_message unequal_axes(const imk_calibrate_log *b,
+                                           const imk_diagnostic_finding *d)
+{
+    const imk_group_fit *g =
+        &b->result->group[d->sensor == IMK_GYRO ? IMK_GROUP_GYRO : IMK_GROUP_ACCEL];
+    const imk_unit unit = imk_unit_readable(imk_unit_of(imki_sensor_units[d->sensor]).dimension,
+                                            g->axis_noise[d->other]);
+    const char *key = imki_sensor_keys[d->sensor];
+    const char quiet = imk_axis_letter(d->axis), noisy = imk_axis_letter(d->other);
+    return imki_calibrate_say(
+        IMK_FINDING_WARNING, "unequal_axes",
+        "the noise of %s_%c (1 sigma of a mean %.3g %s) is %.3g times that of %s_%c (%.3g %s), and "
+        "the residuals, with only %.1f degrees of freedom, do not tell how much the errors of the "
+        "poses add to each: the 95 %% intervals of %s_%c may hold in 88 %% only, those of %s_%c "
+        "may "
+        "be too wide; add poses or repeat the faces, and look for what disturbs %s_%c",
+        key, noisy, g->axis_noise[d->other] / unit.scale, unit.text, d->value, key, quiet,
+        g->axis_noise[d->axis] / unit.scale, unit.text, g->degrees_of_freedom, key, quiet, key,
+        noisy, key, noisy);
+}
+
 static imki_calibrate_message on_solution(const imk_calibrate_log *b,
                                           const imk_diagnostic_finding *d)
 {
@@ -80,6 +102,8 @@ static imki_calibrate_message on_solution(const imk_calibrate_log *b,
             sqrt(d->value), d->value);
     case IMK_DIAGNOSTIC_CORRELATED:
         return correlated(b, d->value);
+    case IMK_DIAGNOSTIC_UNEQUAL_AXES:
+        return unequal_axes(b, d);
     default:
         return imki_calibrate_say(
             IMK_FINDING_WARNING, "outliers",
@@ -117,6 +141,7 @@ static imki_calibrate_message diagnostic_message(const imk_calibrate_log *b,
 {
     const bool of_solution = diagnostic->kind == IMK_DIAGNOSTIC_RESIDUALS ||
                              diagnostic->kind == IMK_DIAGNOSTIC_CORRELATED ||
+                             diagnostic->kind == IMK_DIAGNOSTIC_UNEQUAL_AXES ||
                              diagnostic->kind == IMK_DIAGNOSTIC_OUTLIERS;
     if (of_solution)
         return on_solution(b, diagnostic);
