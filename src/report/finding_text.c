@@ -364,12 +364,13 @@ static const struct message {
                  "where the field points: down in the north of the Earth, up in the south; give "
                  "--position or --dip. If the magnetometer is right, the axes of all other sensors "
                  "are wrong in the same way. Correct the columns (names: in the header or with "
-                 "--columns)"},
-    {"mag_axes_known", "the axes of the magnetometer are not those of the accelerometers, so it is "
-                       "not calibrated: {name}, in a field that points {0.0f} deg "
-                       "{1?}down{1!}up{?}, as at this place, explains the log. If the magnetometer "
-                       "is right, the axes of all other sensors are wrong in the same way. Correct "
-                       "the columns (names: in the header or with --columns)"},
+                 "--columns; signs: in the values)"},
+    {"mag_axes_known",
+     "the axes of the magnetometer are not those of the accelerometers, so it is "
+     "not calibrated: {name}, in a field that points {0.0f} deg "
+     "{1?}down{1!}up{?}, as at this place, explains the log. If the magnetometer "
+     "is right, the axes of all other sensors are wrong in the same way. Correct "
+     "the columns (names: in the header or with --columns; signs: in the values)"},
     {"mag_inverted",
      "the field points {0.0f} deg {1?}down{1!}up{?} by the signs of magnetometer and "
      "accelerometers, and the other way at this place, so the magnetometer is not "

@@ -121,6 +121,10 @@ static void mendings_are_all_told(void **state)
     check_says(CHANGED("$4 = -$4; $7 = -$7"), 1, err,
                "left-handed axes: the same axis of both sensors (x, y or z) inverted, or the same "
                "two axes of both exchanged; or all three gyros inverted");
+    if (check_quick()) { /* the others go the same way */
+        sweep();
+        return;
+    }
     check_says(CHANGED("t = $2; $2 = $3; $3 = t; t = $3; $3 = $4; $4 = t"), 1, err,
                "gyro x, y, z taken from z, x, y; or accel x, y, z taken from y, z, x");
     check_says(CHANGED("$3 = -$3"), 1, err, "gyro_y has the wrong sign");
@@ -279,7 +283,7 @@ static void sound_benches_are_good(void **state)
     (void)state;
     static const double grade[4][2] = {{2, 2}, {1, 1}, {0.1, 0.2}, {0.01, 0.02}};
     for (unsigned k = 0; k < 24; k++) {
-        if (check_skips(k, 6))
+        if (check_skips(k, 13))
             continue;
         put_unit(grade[k % 4][0], grade[k % 4][1], k);
         put_poses(18 + (int)(k * 5 % 13), 0, 1.5 + 0.25 * (k % 7));

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What identify says first: one sentence that is true of the log, and little after it. */
+#include "check.h"
+
 #include "run_command.h"
 
 /* A quarter of an hour of three gyros and three accelerometers at 20 Hz. The awk program changes a
@@ -119,10 +121,39 @@ static void test_length(void **state)
     sweep();
 }
 
+/* A driver that filters, y += a (x - y): N behind it is 0.3 deg/sqrt(h). */
+static void test_filter_of_the_driver(void **state)
+{
+    (void)state;
+    make_log("for (i = 2; i < 5; i++) $i = y[i] += 0.2 * ($i - y[i])");
+    identify_log("--verbose");
+    check_first("Usable with care: the white noise of the gyros may be larger, behind a low-pass "
+                "filter");
+    check_contains(out, "behind a filter of", "N behind the filter");
+    const char *place = strstr(out, "gyro_x (");
+    assert_non_null(place);
+    CHECK_CLOSE(strtod(place + strlen("gyro_x ("), NULL), 0.3, 0.015); /* 5 %: four sigma */
+    sweep();
+}
+
+/* A tenth of the log is one value of one axis; a fiftieth is only left out. */
+static void test_standing_still(void **state)
+{
+    (void)state;
+    make_log("if (t > 300 && t < 390) $4 = z; else z = $4");
+    identify_log("");
+    check_first("Usable with care: gyro_z stands still for a part of the log");
+    make_log("if (t > 300 && t < 318) $4 = z; else z = $4");
+    identify_log("--strict");
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sound), cmocka_unit_test(test_step), cmocka_unit_test(test_json),
-        cmocka_unit_test(test_vibration), cmocka_unit_test(test_length)};
+        cmocka_unit_test(test_sound),         cmocka_unit_test(test_step),
+        cmocka_unit_test(test_json),          cmocka_unit_test(test_vibration),
+        cmocka_unit_test(test_length),        cmocka_unit_test(test_filter_of_the_driver),
+        cmocka_unit_test(test_standing_still)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

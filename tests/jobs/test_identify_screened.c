@@ -87,11 +87,13 @@ static void test_outliers(void **state)
 {
     (void)state;
     imk_identify_log *sound = check_quick() ? NULL : identify(samples[SOUND], true);
-    imk_identify_log *whole = identify(samples[FAULTY], false);
+    imk_identify_log *whole = check_quick() ? NULL : identify(samples[FAULTY], false);
     imk_identify_log *passing = identify(samples[FAULTY], true);
     assert_int_equal(passing->screen[0].outliers.count, 12);
-    check_same(&whole->screen[0], &passing->screen[0]);
-    check_white(whole, passing, 0.2);
+    if (whole)
+        check_same(&whole->screen[0], &passing->screen[0]);
+    if (whole)
+        check_white(whole, passing, 0.2);
     if (sound)
         check_white(passing, sound, 0.05);
     imk_identify_log_free(sound);
@@ -103,7 +105,7 @@ static void test_outliers(void **state)
 static void test_jump_and_limit(void **state)
 {
     (void)state;
-    if (check_quick()) /* both ways are gone in the first test */
+    if (check_quick()) /* one pass is gone in the first test, records in memory in others */
         skip();
     double *x = samples[FAULTY];
     for (size_t i = 0; i < ROWS; i++) {
@@ -128,7 +130,7 @@ static void test_jump_and_limit(void **state)
 static void test_tails(void **state)
 {
     (void)state;
-    if (check_quick()) /* both ways are gone in the first test */
+    if (check_quick()) /* one pass is gone in the first test, records in memory in others */
         skip();
     double *x = samples[FAULTY], normal[64];
     for (size_t i = 0; i < ROWS; i++) {

@@ -93,7 +93,7 @@ size_t imki_axes_text(uint64_t classes, char *text, size_t size)
              "attitude of the accelerometers to the next. %s explains the log: %s. %sHold the "
              "unit with an axis up: its accelerometer must read +9.8 m/s^2. Turn it "
              "counter-clockwise as seen from the tip of an axis: its gyro must read positive. Then "
-             "correct the columns (names: in the header or with --columns)",
+             "correct the columns (names: in the header or with --columns; signs: in the values)",
              count > 1 ? "Each of these" : "This",
              list.bytes ? list.bytes : "several mistakes at once",
              count > 1 ? "The log does not show which it is. " : "");

@@ -143,6 +143,14 @@ static bool find_stuck(const imk_identify_log *log, size_t channel, imki_text *d
     return s->stuck.count > 0;
 }
 
+/* So much is no glitch: the sensor or its driver stood still. */
+static bool find_dead(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    imki_text_add(detail, "%.2g %% of the log", 100 * (double)s->stuck.count / (double)s->n);
+    return (double)s->stuck.count > 0.05 * (double)s->n;
+}
+
 static bool find_saturated(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_screen *s = &log->screen[channel];
@@ -378,6 +386,34 @@ static bool find_undetermined(const imk_identify_log *log, size_t channel, imki_
     return true;
 }
 
+/* White noise N behind a low-pass filter of time constant T has the spectrum of a Gauss-Markov term
+ * with 2 sigma^2 T = N^2. A sensor without white noise, but with such a term of a few samples, is
+ * more likely one with a filter; so is one with a term that is not certain and a tenth of N^2
+ * large. */
+static bool find_behind_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const double few = 10, matters = 0.1;
+    const imk_identification *r = &log->result[channel];
+    const imk_estimate *n = &r->term[IMK_NOISE_WHITE];
+    const double white = n->present ? n->value : 0;
+    const imk_log_column *column = imk_even_record_column(&log->record, channel);
+    const imk_unit unit = imk_channel_term(column, IMK_NOISE_WHITE).unit;
+    const bool alone = r->resonance_count == 0 || r->filter.bandwidth > 0;
+    for (int i = 0; i < r->gauss_markov_count && alone; i++) {
+        const imk_estimate *sigma = &r->gauss_markov[i].sigma;
+        const double time = r->gauss_markov[i].correlation_time.value;
+        const double behind = 2 * sigma->value * sigma->value * time;
+        const bool certain = n->present && sigma->lower > 0;
+        if (time < few * log->record.dt && !certain && behind > matters * white * white) {
+            imki_text_add(detail, "%.3g %s behind a filter of %.2g Hz",
+                          sqrt(behind + white * white) / unit.scale, unit.text,
+                          1 / (6.283185307179586 * time));
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool find_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_low_pass filter = log->result[channel].filter;
@@ -408,6 +444,11 @@ static const struct concern {
      "samples far from the level around them, kept as a part of the noise", NULL},
     {0, find_stuck, IMK_SCREEN_STUCK, IMK_FINDING_NOTE, "stuck",
      "one value repeated longer than the noise allows, left out", "one value repeated, kept"},
+    {0, find_dead, 0, IMK_FINDING_WARNING, "dead",
+     "a value that does not change makes up a part of the log: the sensor or its driver stood "
+     "still; "
+     "look for the cause, and record again",
+     NULL},
     {0, find_saturated, IMK_SCREEN_SATURATED, IMK_FINDING_NOTE, "at_limit",
      "samples at the end of the range; the values are those of normal noise before it was cut off "
      "there, and their intervals allow for that assumption",
@@ -466,6 +507,12 @@ static const struct concern {
      "the output step is so large against the noise that rounding errors are not white, so white "
      "noise and quantization are unreliable; log with more digits or a smaller range",
      NULL},
+    {0, find_behind_filter, 0, IMK_FINDING_WARNING, "behind_filter",
+     "a Gauss-Markov term of a few samples looks like white noise behind a low-pass filter; if the "
+     "sensor or its driver filters, white noise is the first value, and the term is the filter; "
+     "log "
+     "unfiltered samples, or several times as many in a second",
+     NULL},
     {IMK_VERDICT_UNDETERMINED, find_undetermined, 0, IMK_FINDING_WARNING, "undetermined",
      "filter, resonances or other terms can take the place of this term, so its value is hardly "
      "known; use the interval, or log faster or for longer",
@@ -501,7 +548,8 @@ static const struct concern {
 /* What the estimate shows without screening the samples. */
 static bool is_of_estimate(assessment find)
 {
-    return find == find_missing || find == find_ambiguous || find == find_angle_noise;
+    return find == find_missing || find == find_ambiguous || find == find_angle_noise ||
+           find == find_behind_filter;
 }
 
 /* The channels on which a condition holds, each with its details in parentheses. */
