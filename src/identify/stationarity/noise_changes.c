@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Changes of the noise of a channel: the contrast (noise_contrast.c) that is least probable over
- * all octaves splits the record, and its parts are searched again, until nothing is found at the
- * significance over the number of octaves. Then each part gets its N and B. */
+ * all octaves, or in slow noise as a whole, splits the record, and its parts are searched again,
+ * until nothing is found at the significance (of an octave: over the number of octaves). Then each
+ * part gets its N and B. */
 #include "imukit/elementary.h"
 #include "noise_map_internal.h"
 
@@ -73,17 +74,22 @@ static bool is_rounded_away(const imk_noise_map *map, const imk_identification *
     return fast.value < 0.5 * identified->resolution && here.value < 2 * identified->resolution;
 }
 
+/* The tests of a search: each octave, and the slow noise of all octaves together. */
+enum { SLOW = IMK_NOISE_MAP_OCTAVES, TESTS };
+
 /* Everything a search needs. */
 typedef struct search {
     const imk_noise_map *map;
     double significance;
     size_t octaves, tested_count;
     unsigned tested, changed;
+    imki_noise_band slow;
+    unsigned slow_octaves; /* those that slow noise dominates; 0: it is not tested */
     double expected[IMK_NOISE_MAP_OCTAVES], /* scatter by the model's resonances */
         scatter[IMK_NOISE_MAP_OCTAVES];     /* of the record; 0: too few differences */
     size_t boundary_count, boundary[BOUNDARIES];
     imki_noise_contrast contrast[BOUNDARIES]; /* the least probable one after each boundary */
-    size_t octave[BOUNDARIES];
+    size_t test[BOUNDARIES];
     unsigned also[BOUNDARIES]; /* octaves that change significantly somewhere in the part */
     bool transition[IMK_NOISE_MAP_BLOCKS]; /* columns within which the noise changes */
     double probability;
@@ -104,6 +110,24 @@ static void choose_octaves(search *s, const imk_identification *identified,
     }
 }
 
+/* The octaves of few differences, by the share of slow noise. Each alone holds too little to see it
+ * become twice as strong, and in many short columns the probability of the largest difference by
+ * chance is high: they are tested together, in eighths of the record. */
+static void choose_slow(search *s, const imki_noise_shares *shares)
+{
+    enum { PARTS = 8 };
+    static const double least = 0.1, most = 0.5;
+    s->slow.joined = (imk_noise_map_blocks(s->map) + PARTS - 1) / PARTS;
+    for (size_t j = 0; j < s->octaves; j++) {
+        const double total = imki_noise_total(shares, j), share = shares->slow[j] / total;
+        if (!(s->tested >> j & 1) || s->scatter[j] > 0 || !(share > least))
+            continue;
+        s->slow.share[j] = share;
+        s->slow.scale[j] = 0.5 / total;
+        s->slow_octaves |= share > most ? 1u << j : 0;
+    }
+}
+
 static double scatter_for(const search *s, size_t octave, size_t low, size_t high)
 {
     const double own = imki_noise_scatter(s->map, octave, low, high);
@@ -111,27 +135,44 @@ static double scatter_for(const search *s, size_t octave, size_t low, size_t hig
     return scatter > 0 ? fmax(scatter, s->expected[octave]) : 0;
 }
 
+static bool is_tested(const search *s, size_t test)
+{
+    return test == SLOW ? s->slow_octaves != 0 : s->tested >> test & 1;
+}
+
+static unsigned octaves_of(const search *s, size_t test)
+{
+    return test == SLOW ? s->slow_octaves : 1u << test;
+}
+
+/* How often a test is more likely to alarm than if it were alone: the octaves share a significance,
+ * slow noise has its own. */
+static double tries(const search *s, size_t test)
+{
+    return test == SLOW ? 1 : (double)s->tested_count;
+}
+
 /* The least probable contrast between a boundary and the next. */
 static void search_part(search *s, size_t part)
 {
-    const double least = s->significance / (double)(s->tested_count + !s->tested_count);
     const size_t low = s->boundary[part], high = s->boundary[part + 1];
     imki_noise_contrast *best = &s->contrast[part];
     *best = (imki_noise_contrast){low, high, 1, 0};
     s->also[part] = 0;
-    for (size_t j = 0; j < s->octaves && high > low + 1; j++) {
-        if (!(s->tested >> j & 1))
+    for (size_t test = 0; test < TESTS && high > low + 1; test++) {
+        if (!is_tested(s, test))
             continue;
-        const imki_noise_contrast c =
-            imki_noise_contrast_find(s->map, j, low, high, scatter_for(s, j, low, high));
-        s->also[part] |= c.probability < least ? 1u << j : 0;
+        const imki_noise_band band = test == SLOW ? s->slow : imki_noise_octave(test);
+        const double scatter = test == SLOW ? 0 : scatter_for(s, test, low, high);
+        imki_noise_contrast c = imki_noise_contrast_find(s->map, &band, low, high, scatter);
+        c.probability = fmin(1, c.probability * tries(s, test));
+        s->also[part] |= c.probability < s->significance ? octaves_of(s, test) : 0;
         if (c.probability < best->probability ||
             (c.probability == 0 && best->probability == 0 && c.size > best->size)) {
             *best = c;
-            s->octave[part] = j;
+            s->test[part] = test;
         }
     }
-    best->probability = fmin(1, best->probability * s->significance / least);
 }
 
 static void insert_boundary(search *s, size_t place)
@@ -144,7 +185,7 @@ static void insert_boundary(search *s, size_t place)
     for (size_t i = s->boundary_count; i > k; i--) {
         s->boundary[i] = s->boundary[i - 1];
         s->contrast[i] = s->contrast[i - 1];
-        s->octave[i] = s->octave[i - 1];
+        s->test[i] = s->test[i - 1];
         s->also[i] = s->also[i - 1];
     }
     s->boundary[k] = place;
@@ -172,7 +213,7 @@ static void split(search *s)
         const imki_noise_contrast found = s->contrast[part];
         if (!(found.probability < s->significance))
             return;
-        s->changed |= 1u << s->octave[part] | s->also[part];
+        s->changed |= octaves_of(s, s->test[part]) | s->also[part];
         insert_boundary(s, found.first);
         insert_boundary(s, found.end);
         for (size_t p = 0; p + 1 < s->boundary_count; p++)
@@ -184,11 +225,17 @@ static void split(search *s)
 static bool is_needed(const search *s, size_t k)
 {
     const size_t low = s->boundary[k - 1], high = s->boundary[k + 1];
-    for (size_t j = 0; j < s->octaves; j++)
-        if ((s->tested >> j & 1) &&
-            imki_noise_compare(s->map, j, low, s->boundary[k], high, scatter_for(s, j, low, high)) <
-                s->significance / (double)s->tested_count)
+    for (size_t test = 0; test < TESTS; test++) {
+        if (!is_tested(s, test))
+            continue;
+        const double scatter = test == SLOW ? 0 : scatter_for(s, test, low, high);
+        imki_noise_band band = test == SLOW ? s->slow : imki_noise_octave(test);
+        band.joined = 1; /* the place is given */
+        if (tries(s, test) *
+                imki_noise_compare(s->map, &band, low, s->boundary[k], high, scatter) <
+            s->significance)
             return true;
+    }
     return false;
 }
 
@@ -308,6 +355,7 @@ imk_status imk_noise_changes_find(const imk_noise_changes_settings *settings,
     imk_noise_changes r = {.scatter = 1};
     imki_noise_shares_find(identified, settings->dt, s.octaves, &shares);
     choose_octaves(&s, identified, &shares, settings->dt);
+    choose_slow(&s, &shares);
     split(&s);
     prune(&s);
     r.tested = s.tested;

@@ -11,7 +11,10 @@
  * which are means of many samples and so Gaussian, the ratio of mean squares has the F
  * distribution. Its degrees are 8/9 of the number of differences, because their correlation is
  * largest for random walk, 1/4 between neighbours, and sum r^2 = 1 + 2/16; times 2/(2 + excess
- * kurtosis), where this is less than 1. */
+ * kurtosis), where this is less than 1.
+ *
+ * A band joins octaves: squares over their variance, weighted by a share, whose sum has the degrees
+ * (sum of shares)^2/(sum of their squares) of as many differences [SATTERTHWAITE1946]. */
 #include "imukit/distributions.h"
 #include "imukit/elementary.h"
 #include "noise_map_internal.h"
@@ -31,32 +34,64 @@ typedef struct columns {
     size_t count;
     size_t place[BLOCKS]; /* of each in the map */
     double n[BLOCKS + 1], absolute[BLOCKS + 1], square[BLOCKS + 1];
-    double variance; /* of an absolute value within its column */
-    double degrees;  /* of a mean square of one difference */
+    double variance; /* of an absolute value within its column; of a single octave */
+    double degrees;  /* of a mean square of n = 1 */
 } columns;
 
-static void gather(const imk_noise_map *map, size_t octave, size_t low, size_t high, columns *c)
+/* Sums of a band over columns first … end - 1: n and square are those of differences of variance 1,
+ * each of which counts the share of its octave. */
+typedef struct band_cell {
+    double n, squared_shares, absolute, square, fourth, within, degrees;
+} band_cell;
+
+static band_cell band_sums(const imk_noise_map *map, const imki_noise_band *band, size_t first,
+                           size_t end)
 {
-    double within = 0, degrees = 0, fourth = 0;
+    band_cell sum = {0};
+    for (size_t j = 0; j < IMK_NOISE_MAP_OCTAVES; j++) {
+        const double share = band->share[j], scale = band->share[j] * band->scale[j];
+        for (size_t b = first; b < end && share > 0; b++) {
+            const imk_noise_cell *cell = &map->cell[j][b];
+            if (!(cell->count > 0))
+                continue;
+            sum.n += share * cell->count;
+            sum.squared_shares += share * share * cell->count;
+            sum.absolute += cell->absolute;
+            sum.square += scale * cell->square;
+            sum.fourth += scale * scale * cell->fourth;
+            sum.within += fmax(0, cell->square - cell->absolute * cell->absolute / cell->count);
+            sum.degrees += cell->count - 1;
+        }
+    }
+    return sum;
+}
+
+static void gather(const imk_noise_map *map, const imki_noise_band *band, size_t low, size_t high,
+                   columns *c)
+{
+    double within = 0, degrees = 0, fourth = 0, squared_shares = 0;
     c->count = 0;
     c->n[0] = c->absolute[0] = c->square[0] = 0;
-    for (size_t b = low; b < high; b++) {
-        const imk_noise_cell *cell = &map->cell[octave][b];
-        if (!(cell->count > 0))
+    for (size_t b = low; b < high; b += band->joined) {
+        const size_t end = b + band->joined < high ? b + band->joined : high;
+        const band_cell cell = band_sums(map, band, b, end);
+        if (!(cell.n > 0))
             continue;
         const size_t k = c->count++;
         c->place[k] = b;
-        c->n[k + 1] = c->n[k] + cell->count;
-        c->absolute[k + 1] = c->absolute[k] + cell->absolute;
-        c->square[k + 1] = c->square[k] + cell->square;
-        within += fmax(0, cell->square - cell->absolute * cell->absolute / cell->count);
-        degrees += cell->count - 1;
-        fourth += cell->fourth;
+        c->n[k + 1] = c->n[k] + cell.n;
+        c->absolute[k + 1] = c->absolute[k] + cell.absolute;
+        c->square[k + 1] = c->square[k] + cell.square;
+        within += cell.within;
+        degrees += cell.degrees;
+        fourth += cell.fourth;
+        squared_shares += cell.squared_shares;
     }
     c->variance = degrees > 0 ? within / degrees : 0;
     const double n = c->n[c->count], square = c->square[c->count];
-    const double kurtosis = square > 0 ? fourth * n / (square * square) : 3;
-    c->degrees = degrees_most * 2 / fmax(2, kurtosis - 1);
+    const double kurtosis = square > 0 ? fourth * n * n / (squared_shares * square * square) : 3;
+    c->degrees = degrees_most * 2 / fmax(2, kurtosis - 1) *
+                 (squared_shares > 0 ? n / squared_shares : 1);
 }
 
 static double step_of(const columns *c, size_t k, size_t width)
@@ -88,10 +123,18 @@ static double scatter_of(const columns *c)
     return fmax(1, fmax(narrow, median));
 }
 
+imki_noise_band imki_noise_octave(size_t octave)
+{
+    imki_noise_band band = {.joined = 1};
+    band.share[octave] = band.scale[octave] = 1;
+    return band;
+}
+
 double imki_noise_scatter(const imk_noise_map *map, size_t octave, size_t low, size_t high)
 {
+    const imki_noise_band band = imki_noise_octave(octave);
     columns c;
-    gather(map, octave, low, high, &c);
+    gather(map, &band, low, high, &c);
     const double total = c.n[c.count];
     if (c.count < COLUMNS_LEAST || total < many * (double)c.count || !(c.variance > 0))
         return 0;
@@ -101,9 +144,10 @@ double imki_noise_scatter(const imk_noise_map *map, size_t octave, size_t low, s
 double imki_noise_steps(const imk_noise_map *map, size_t octave, size_t low, size_t high,
                         double *steps)
 {
+    const imki_noise_band band = imki_noise_octave(octave);
     columns c;
     double sum = 0;
-    gather(map, octave, low, high, &c);
+    gather(map, &band, low, high, &c);
     if (c.n[c.count] < many * (double)c.count || !(c.variance > 0))
         return 0;
     for (size_t k = 0; k + 2 <= c.count; k++)
@@ -175,12 +219,12 @@ static double size_of(const columns *c, double scatter, size_t i, size_t j)
     return ratio > 0 ? deviate(ratio, inside, outside) : 0;
 }
 
-double imki_noise_compare(const imk_noise_map *map, size_t octave, size_t low, size_t middle,
-                          size_t high, double scatter)
+double imki_noise_compare(const imk_noise_map *map, const imki_noise_band *band, size_t low,
+                          size_t middle, size_t high, double scatter)
 {
     columns c;
     size_t before = 0;
-    gather(map, octave, low, high, &c);
+    gather(map, band, low, high, &c);
     while (before < c.count && c.place[before] < middle)
         before++;
     if (before == 0 || before == c.count || (scatter > 0 && !(c.variance > 0)))
@@ -188,13 +232,13 @@ double imki_noise_compare(const imk_noise_map *map, size_t octave, size_t low, s
     return probability_of(&c, scatter, size_of(&c, scatter, 0, before), 0, before);
 }
 
-imki_noise_contrast imki_noise_contrast_find(const imk_noise_map *map, size_t octave, size_t low,
-                                             size_t high, double scatter)
+imki_noise_contrast imki_noise_contrast_find(const imk_noise_map *map, const imki_noise_band *band,
+                                             size_t low, size_t high, double scatter)
 {
     columns c;
     imki_noise_contrast found = {low, high, 1, 0};
     size_t best_i = 0, best_j = 0;
-    gather(map, octave, low, high, &c);
+    gather(map, band, low, high, &c);
     if (scatter > 0 && (c.count < 2 || !(c.variance > 0)))
         return found;
     for (size_t i = 0; i < c.count; i++)

@@ -16,14 +16,22 @@ typedef struct imki_noise_contrast {
 } imki_noise_contrast;
 
 /* noise_contrast.c */
-/* The stretch that differs most, of one octave, within columns low … high - 1.
- * @param scatter  variance of the strength from column to column over that of independent
- *                 differences, at least 1; 0: not known, too few differences */
-imki_noise_contrast imki_noise_contrast_find(const imk_noise_map *map, size_t octave, size_t low,
-                                             size_t high, double scatter);
+/* Octaves that are compared together. */
+typedef struct imki_noise_band {
+    size_t joined;                       /* so many columns are taken as one */
+    double share[IMK_NOISE_MAP_OCTAVES]; /* what a difference counts; 0: not in the band */
+    double scale[IMK_NOISE_MAP_OCTAVES]; /* 1/(its mean square); any number if only one octave */
+} imki_noise_band;
+/* A single octave. */
+imki_noise_band imki_noise_octave(size_t octave);
+/* The stretch that differs most within columns low … high - 1.
+ * @param scatter  of a single octave, variance of the strength from column to column over that of
+ *                 independent differences, at least 1; 0: not known, too few differences */
+imki_noise_contrast imki_noise_contrast_find(const imk_noise_map *map, const imki_noise_band *band,
+                                             size_t low, size_t high, double scatter);
 /* Probability of as large a difference between columns low … middle - 1 and middle … high - 1. */
-double imki_noise_compare(const imk_noise_map *map, size_t octave, size_t low, size_t middle,
-                          size_t high, double scatter);
+double imki_noise_compare(const imk_noise_map *map, const imki_noise_band *band, size_t low,
+                          size_t middle, size_t high, double scatter);
 /* Scatter of columns low … high - 1, see above. */
 double imki_noise_scatter(const imk_noise_map *map, size_t octave, size_t low, size_t high);
 
@@ -38,7 +46,8 @@ typedef struct imki_noise_shares {
     size_t octaves;
     unsigned skipped; /* octaves that N and B are not estimated from */
     double white[IMK_NOISE_MAP_OCTAVES], flicker[IMK_NOISE_MAP_OCTAVES], /* [unit^2] */
-        other[IMK_NOISE_MAP_OCTAVES], tones[IMK_NOISE_MAP_OCTAVES];      /* other: with the tones */
+        other[IMK_NOISE_MAP_OCTAVES], tones[IMK_NOISE_MAP_OCTAVES],      /* other: with the tones */
+        slow[IMK_NOISE_MAP_OCTAVES]; /* flicker, random walk, Gauss-Markov */
 } imki_noise_shares;
 static inline double imki_noise_total(const imki_noise_shares *s, size_t octave)
 {
