@@ -58,6 +58,11 @@ typedef struct imk_screen {
     double noise_scatter;   /**< relative standard deviation of the variance within 32 samples over
                                the record, by its scatter between batches, without
                              outliers that are none of the noise; 0: too short */
+    imk_screen_count lost; /**< zeros outside the noise, as loggers write them for lost rows; taken
+                              out with the stuck samples, but none of them */
+    double zeros; /**< share of the samples by which zeros among the noise are more than their
+                     neighbours tell: small values were put to zero, or all were cut off toward it;
+                     0: they are not */
     imk_screen_count stuck; /**< samples in runs of one value that are longer than the noise allows,
                                without the first sample of each run */
     size_t longest_stuck;   /**< samples in the longest run */

@@ -84,7 +84,8 @@ imk_status imk_screener_begin(const imk_screen_settings *settings, unsigned what
     s->context = context;
     s->z = -imk_normal_quantile(settings->false_alarm / (2 * imki_screen_samples));
     s->last = s->run_value = (double)NAN;
-    s->found.outliers.first = s->found.stuck.first = s->found.missing.first = SIZE_MAX;
+    s->found.outliers.first = s->found.stuck.first = s->found.missing.first = s->found.lost.first =
+        SIZE_MAX;
     imki_levels_begin(&s->levels);
     imki_cycles_begin(&s->cycles);
     *screener = s;
@@ -185,6 +186,7 @@ static void decide(imk_screener *s)
     s->marked = false;
     find_step(s, s->chunk, s->count[0], s->raw[0]);
     imki_screen_stuck(s);
+    imki_screen_lost(s);
     imki_screen_outliers(s);
     hand_on(s);
     mark_out(s, IMKI_MARK_STUCK, s->loose);
@@ -192,6 +194,7 @@ static void decide(imk_screener *s)
     imki_screen_variances(s);
     if (s->chunk % CORE_EVERY == 0)
         imki_screen_core(s);
+    imki_screen_zeros(s);
     add_ends(s);
     imki_cycles_add(&s->cycles, s->chunk, s->count[0], s->clean, s->step, s->value);
     imki_levels_add(&s->levels, s->count[0], s->clean, s->thermal ? s->warm[0] : NULL);

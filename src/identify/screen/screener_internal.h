@@ -58,6 +58,12 @@ typedef struct imki_cycles {
     double differences, straight, straight_by_chance; /* second differences, those that vanish */
 } imki_cycles;
 
+/* Zeros among the noise, and values beside them, in chunks of fine steps and of coarse ones. */
+typedef struct imki_zeros {
+    double fine, due, variance; /* zeros, how many are due, variance of their difference */
+    double coarse, one, two;    /* zeros, and values one and two steps away, of one side */
+} imki_zeros;
+
 typedef struct imki_counting {
     size_t run;  /* of missing samples at the end of what was seen */
     size_t last; /* place of the last outlier */
@@ -101,6 +107,7 @@ struct imk_screener {
     imki_ends high, low;      /* low: of the negatives */
     imki_levels levels;
     imki_cycles cycles;
+    imki_zeros zeros;
     imk_screen found;
 };
 
@@ -122,6 +129,14 @@ void imki_screen_repeats(imk_screener *s, int at, bool whole);
 size_t imki_screen_stuck_limit(const imk_screener *s);
 /* Mark stuck samples of raw[0]; raw[1] tells how the last run goes on. */
 void imki_screen_stuck(imk_screener *s);
+
+/* screener_zeros.c */
+/* Mark zeros that lie outside the other samples of raw[0]. */
+void imki_screen_lost(imk_screener *s);
+/* Count zeros among the noise of the chunk. */
+void imki_screen_zeros(imk_screener *s);
+/* Share of the samples by which zeros are more than due; 0: they are not. */
+double imki_zeros_excess(const imki_zeros *zeros, double present);
 
 /* screener_outliers.c */
 void imki_screen_outliers(imk_screener *s);

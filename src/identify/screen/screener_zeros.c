@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Zeros that are no measurements.
+ *
+ * Loggers write 0 where a row was lost. Such zeros lie outside the other samples of their chunk:
+ * these are all on one side of zero, which is farther from them than a quarter of their range (6
+ * standard deviations from their mean, for a range of 8) and three steps. They are taken out like
+ * stuck samples.
+ *
+ * Zeros among the noise may be too many: a driver that puts small values to zero, or cuts values
+ * off toward zero. How many are due, the values beside zero tell. Where the step q between values
+ * is fine, as many as the mean of those up to k = scale/(2 q) steps on either side; where it is
+ * coarse, by the logarithm of the numbers n_1, n_2 one and two steps away, which is a parabola for
+ * Gaussian noise:
+ *
+ *     ln n_0 = (4 ln n_1 - ln n_2)/3
+ *
+ * Steps beyond 1.4 scales are not tested: where the level moves, a mixture of such noise is no
+ * parabola, and white noise is doubted for the steps. */
+#include "imukit/elementary.h"
+#include "screener_internal.h"
+
+#include <math.h>
+
+enum { STEPS = 3, FINE = 3, COUNTED_MIN = 25 };
+
+static const double apart = 0.25; /* of the range: so far from zero are the other samples */
+/* Zeros among the noise are too many when they are more than due by these. */
+static const double coarsest = 1.4;
+static const double least_share = 0.015, least_factor = 1.3, deviations = 6;
+
+static size_t count_zeros(size_t count, const double *x)
+{
+    size_t zeros = 0;
+    for (size_t i = 0; i < count; i++)
+        zeros += x[i] == 0;
+    return zeros;
+}
+
+/* Lowest and highest of the samples that are not zero. */
+static bool extremes_without_zeros(size_t count, const double *x, double *low, double *high)
+{
+    *low = HUGE_VAL;
+    *high = -HUGE_VAL;
+    for (size_t i = 0; i < count; i++) {
+        *low = x[i] != 0 && x[i] < *low ? x[i] : *low;
+        *high = x[i] != 0 && x[i] > *high ? x[i] : *high;
+    }
+    return *low <= *high;
+}
+
+static void mark_lost(imk_screener *s)
+{
+    imk_screen_count *lost = &s->found.lost;
+    const double *x = s->raw[0];
+    for (size_t i = 0; i < s->count[0]; i++) {
+        if (x[i] != 0 || s->mark[i])
+            continue;
+        const size_t place = s->chunk * IMKI_SCREEN_CHUNK + i;
+        lost->first = lost->count++ == 0 ? place : lost->first;
+        lost->runs += i == 0 || x[i - 1] != 0;
+        s->mark[i] |= IMKI_MARK_STUCK;
+        s->marked = true;
+    }
+}
+
+void imki_screen_lost(imk_screener *s)
+{
+    double low, high;
+    if (count_zeros(s->count[0], s->raw[0]) == 0 ||
+        !extremes_without_zeros(s->count[0], s->raw[0], &low, &high))
+        return;
+    if (fmax(low, -high) > apart * (high - low) + STEPS * s->step)
+        mark_lost(s);
+}
+
+/* Samples that are there, not zero and at most `limit` from it. */
+static double count_near(const imk_screener *s, double limit)
+{
+    size_t near = 0;
+    for (size_t i = 0; i < s->count[0]; i++)
+        near += s->clean[i] != 0 && fabs(s->clean[i]) < limit;
+    return (double)near;
+}
+
+void imki_screen_zeros(imk_screener *s)
+{
+    imki_zeros *z = &s->zeros;
+    const double zeros = (double)count_zeros(s->count[0], s->clean), step = s->step;
+    if (zeros == 0 || !(s->scale > 0) || step > coarsest * s->scale)
+        return;
+    if (step > 0 && step * 2 * FINE > s->scale) {
+        const double one = count_near(s, 1.5 * step), two = count_near(s, 2.5 * step);
+        z->coarse += zeros;
+        z->one += 0.5 * one;
+        z->two += 0.5 * (two - one);
+        return;
+    }
+    const double reach = step > 0 ? floor(0.5 * s->scale / step) : 0;
+    const double due = reach > 0 ? count_near(s, (reach + 0.5) * step) / (2 * reach) : 0;
+    z->fine += zeros;
+    z->due += due;
+    z->variance += due + (reach > 0 ? due / (2 * reach) : 0);
+}
+
+double imki_zeros_excess(const imki_zeros *z, double present)
+{
+    double due = z->due, variance = z->variance, zeros = z->fine;
+    if (z->one >= COUNTED_MIN && z->two >= COUNTED_MIN) {
+        const double here = imk_exp((4 * imk_ln(z->one) - imk_ln(z->two)) / 3);
+        due += here;
+        variance += here + here * here * (16 / z->one + 1 / z->two) / 18;
+        zeros += z->coarse;
+    }
+    const double excess = zeros - due;
+    return excess > least_share * present && zeros > least_factor * due &&
+                   excess > deviations * sqrt(variance)
+               ? excess / present
+               : 0;
+}
