@@ -26,6 +26,11 @@ const option log_input_options[LOG_INPUT_OPTIONS] = {
     {"axes", OPTION_TEXT, AT(file.axes), .value = "NAMES",
      .help = "directions of the log's x, y and z axes, such as right-forward-up; they are mapped "
              "to forward-right-down"},
+    {"after", OPTION_QUANTITY, AT(file.after), .value = "TIME", .unit = "s", .choices = "0..1e9",
+     .help = "leave out what is before this time from the start of the log, such as 30s in which "
+             "the sensor was still handled"},
+    {"before", OPTION_QUANTITY, AT(file.before), .value = "TIME", .unit = "s",
+     .choices = "1e-9..1e9", .help = "leave out what is after this time from the start of the log"},
     {"gaps", OPTION_CHOICE, AT(gaps), .value = "CHOICE", .choices = "refuse|bridge|longest|keep",
      .help = "what to do with rows that are missing, not finite or out of order: refuse the log "
              "(the default, but not of allan and identify; gaps of up to 0.1 % are bridged with a "

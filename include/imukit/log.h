@@ -51,6 +51,9 @@ typedef struct imk_log_settings {
     /** Units for columns without a unit in the header. */
     const char *gyro_unit, *accel_unit, *time_unit, *temperature_unit;
     double rate;      /**< sampling rate [Hz]; required without a time column; 0: from the times */
+    /** Only rows from `after` to `before` seconds from the first one are read; 0: from the first,
+     *  to the last. Times stay as they are; findings are of the rows read. */
+    double after, before;
     const char *axes; /**< axes of the log, "right-forward-up" …, mapped to forward-right-down;
                          NULL: no mapping */
     bool any_columns; /**< also accept a table without time and sensors; default false */

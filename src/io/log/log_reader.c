@@ -27,7 +27,7 @@ static imk_status check_settings(const imk_log_settings *settings, imk_error *er
             error->value = settings->rate;
         return IMK_ERROR_RANGE;
     }
-    return IMK_OK;
+    return imki_log_part_check(settings, error);
 }
 
 static imk_status open_reader(imk_log_reader *reader, imki_input *input, imk_error *error)
@@ -194,7 +194,7 @@ static void finish_block(imk_log_reader *reader, size_t rows, double *time, doub
         const double origin = reader->time_origin, scale = layout->factor[layout->time_column];
         for (size_t i = 0; i < rows; i++)
             time[i] = (time[i] - origin) * scale;
-        imki_record_times_add(&reader->times, reader->rows + 1, rows, time);
+        imki_record_times_add(&reader->times, reader->part.before + reader->rows + 1, rows, time);
         if (layout->has_increments && reader->rate == 0.0)
             find_intervals(reader, rows, time);
     }
@@ -228,7 +228,12 @@ static imk_status read_block(imk_log_reader *reader, size_t max_rows, double *co
         if (column >= 0 && column == layout->time_column)
             time = out[i] = columns[column] ? columns[column] : reader->time;
     }
-    const imk_status status = reader->codec->read(reader, max_rows, out, rows, error);
+    imk_status status;
+    size_t read;
+    do {
+        status = reader->codec->read(reader, max_rows, out, &read, error);
+        *rows = imki_log_part_keep(reader, read, time, out);
+    } while (status == IMK_OK && read > 0 && *rows == 0);
     finish_block(reader, *rows, time, columns);
     return status;
 }
@@ -255,7 +260,7 @@ imk_status imk_log_read(imk_log_reader *reader, size_t max_rows, double *const *
         return reader->failure.status;
     }
     *rows = done;
-    return IMK_OK;
+    return done > 0 || reader->rows > 0 ? IMK_OK : imki_log_part_empty(reader, error);
 }
 
 imk_log_findings imk_log_findings_get(const imk_log_reader *reader)

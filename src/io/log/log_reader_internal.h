@@ -66,6 +66,14 @@ imk_status imki_log_row_read(imki_log_layout_read *layout, imki_log_piece line, 
 
 enum { IMKI_LOG_BLOCK = 1024 }; /* rows handled at a time */
 
+/* Which part of the log is read. */
+typedef struct imki_log_part {
+    size_t before, after; /* rows dropped before and after it */
+    size_t not_finite;    /* rows in it */
+    bool begun;
+    double first_time, place; /* of the first row [s]; of the last row, from it */
+} imki_log_part;
+
 struct imk_log_reader {
     imki_log_text text;
     imki_log_layout_read layout;
@@ -86,10 +94,21 @@ struct imk_log_reader {
     bool failed; /* an error met behind rows that were delivered; comes with the next call */
     imk_error failure;
     imki_record_times times;
+    imki_log_part part;
     double spare[IMKI_LOG_BLOCK];    /* for columns nobody wants */
     double time[IMKI_LOG_BLOCK];     /* for the times, if nobody wants them */
     double interval[IMKI_LOG_BLOCK]; /* [s] of increments */
 };
+
+/* Keep the rows within the part that the settings state; the others are counted.
+ * @param time,out  of `rows` rows, as the format gave them: times in the unit of the file (NULL: no
+ *                  time column), cells
+ * @return how many are kept, at the front of the arrays */
+size_t imki_log_part_keep(imk_log_reader *reader, size_t rows, const double *time,
+                          double *const *out);
+/* At the end of a log without a row in the part: @return IMK_ERROR_RANGE if it has others. */
+imk_status imki_log_part_empty(const imk_log_reader *reader, imk_error *error);
+imk_status imki_log_part_check(const imk_log_settings *settings, imk_error *error);
 
 /* Back to the first row: the log is opened again. */
 imk_status imki_log_rewind(imk_log_reader *reader, imk_error *error);

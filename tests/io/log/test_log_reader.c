@@ -822,6 +822,53 @@ static void progress_is_what_was_consumed(void **state)
     free(text);
 }
 
+/* A part of a log is what a log of these rows alone would be, by its times or by a rate. */
+static void a_part_is_read(void **state)
+{
+    (void)state;
+    enum { ROWS = 3500 };
+    char *text = malloc(ROWS * 40 + 100);
+    for (int timed = 0; timed < 2; timed++) {
+        size_t size = (size_t)sprintf(text, "%sgyro_x [deg/s]\n", timed ? "time [s]," : "");
+        for (int i = 0; i < ROWS; i++) {
+            size += timed ? (size_t)sprintf(text + size, "%.2f,", 1e9 + 0.01 * i) : 0;
+            size += (size_t)sprintf(text + size, i == 10 || i == 1400 ? "nan\n" : "%d\n", i);
+        }
+        imk_log_settings settings = imk_log_default();
+        settings.rate = timed ? 0 : 100;
+        settings.after = 12.995;
+        settings.before = 24.005;
+        table t = read_text(text, &settings);
+        const size_t column = t.columns - 1;
+        assert_int_equal(t.rows, 1101);
+        assert_int_equal(t.findings.rows, 1101);
+        assert_int_equal(t.findings.not_finite, 1);
+        assert_int_equal(t.findings.first_not_finite, 1401);
+        assert_int_equal(t.findings.gaps, 0);
+        for (size_t i = 0; i < t.rows; i++)
+            assert_true(i == 100 || t.data[column][i] == (double)(1300 + i) * degree);
+        if (timed)
+            CHECK_CLOSE(t.data[0][0], 13, 1e-6);
+        free_table(&t);
+        settings.before = 0;
+        t = read_text(text, &settings);
+        assert_int_equal(t.rows, ROWS - 1300);
+        free_table(&t);
+        settings.after = 0;
+        settings.before = 0.095;
+        t = read_text(text, &settings);
+        assert_int_equal(t.rows, 10);
+        assert_int_equal(t.findings.not_finite, 0);
+        free_table(&t);
+        settings.before = 0;
+        settings.after = 40;
+        check_refused(text, size, &settings, IMK_ERROR_EMPTY, 0, "ends after 34.99 s");
+        settings.before = 30;
+        check_refused(text, size, &settings, IMK_ERROR_RANGE, 0, "--after");
+    }
+    free(text);
+}
+
 static void real_log_loads_whole(void **state)
 {
     (void)state;
@@ -871,6 +918,7 @@ int main(void)
         cmocka_unit_test(memory_of_exact_size_is_enough),
         cmocka_unit_test(matrices_are_read),
         cmocka_unit_test(progress_is_what_was_consumed),
+        cmocka_unit_test(a_part_is_read),
         cmocka_unit_test(real_log_loads_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
