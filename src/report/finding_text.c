@@ -7,12 +7,8 @@
  * {0u} a quantity of the unit that is the name. {name} is the name, {other} what stands behind a
  * tab in it; {record} and {model} are what these are called. The text between {2?} and {?} is shown
  * if number 2 is not 0, the text behind {2!} if it is 0. */
-#include "imukit/allan.h"
-#include "imukit/job.h"
-#include "imukit/units.h"
+#include "finding_fill_internal.h"
 
-#include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 
 #define HOW_TO_GO_ON "use --gaps longest (the longest clean stretch) or --gaps bridge (interpolate)"
@@ -536,104 +532,6 @@ static const struct message {
     {"bridged", "{0} of {1} samples are missing or bad: bridged by straight lines"},
 };
 
-typedef struct writing {
-    char *text;
-    size_t size, length;
-    const char *record, *model;
-} writing;
-
-static void put(writing *w, const char *text, size_t length)
-{
-    for (size_t i = 0; i < length; i++, w->length++)
-        if (w->length + 1 < w->size)
-            w->text[w->length] = text[i];
-}
-
-/* One of two words about a sensor; NULL: `how` asks for none. */
-static const char *sensor_word(double sensor, char how)
-{
-    return how == 'k'   ? (sensor == 0 ? "gyro" : "accel")
-           : how == 'p' ? (sensor == 0 ? "gyros" : "accelerometers")
-           : how == 'q' ? (sensor == 0 ? "rate" : "specific force")
-                        : NULL;
-}
-
-/* In a readable unit for its size, of the same dimension as the unit `si`. */
-static void put_quantity(writing *w, double number, const char *si)
-{
-    const imk_unit unit = imk_unit_readable(imk_unit_of(si).dimension, number);
-    char text[80];
-    snprintf(text, sizeof text, "%.5g %s", number / unit.scale, unit.text);
-    put(w, text, strlen(text));
-}
-
-/* A number, written as the letters after its index say. */
-static void put_number(writing *w, double number, const char *how, size_t length)
-{
-    char format[16], text[64];
-    if (length == 1 && *how == 's') {
-        put(w, "s", number == 1 ? 0 : 1);
-        return;
-    }
-    const char *sensor = length == 1 ? sensor_word(number, *how) : NULL;
-    if (sensor) {
-        put(w, sensor, strlen(sensor));
-        return;
-    }
-    if (length == 1 && (*how == 'a' || *how == 't')) {
-        const char *word = *how == 'a' ? imk_allan_name((imk_allan_statistic)number)
-                                       : imk_status_text((imk_status)number);
-        put(w, word, strlen(word));
-        return;
-    }
-    snprintf(format, sizeof format, "%%%.*s", (int)(length > 0 ? length : 3),
-             length > 0 ? how : ".0f");
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral"
-    const int written = snprintf(text, sizeof text, format, number);
-#pragma GCC diagnostic pop
-    put(w, text, written > 0 ? strlen(text) : 0);
-}
-
-/* The text for a placeholder, "{name}" or "{0g}", of `length` characters without its last. */
-static void put_place(writing *w, const char *place, size_t length, const imk_finding *finding)
-{
-    const size_t first = strcspn(finding->name, "\t");
-    const char *other = finding->name[first] ? finding->name + first + 1 : "";
-    if (strncmp(place, "{name}", 6) == 0)
-        put(w, finding->name, first);
-    else if (strncmp(place, "{other}", 7) == 0)
-        put(w, other, strlen(other));
-    else if (strncmp(place, "{record}", 8) == 0)
-        put(w, w->record, strlen(w->record));
-    else if (strncmp(place, "{model}", 7) == 0)
-        put(w, w->model, strlen(w->model));
-    else if (strncmp(place + 2, "u}", 2) == 0)
-        put_quantity(w, finding->number[place[1] - '0'], finding->name);
-    else
-        put_number(w, finding->number[place[1] - '0'], place + 2, length - 2);
-}
-
-static void put_message(writing *w, const char *message, const imk_finding *finding)
-{
-    bool told = true;
-    for (const char *c = message; *c;) {
-        const size_t plain = strcspn(c, "{");
-        if (told)
-            put(w, c, plain);
-        c += plain;
-        if (!*c)
-            return;
-        const size_t length = strcspn(c, "}");
-        const char how = c[length - 1];
-        if (how == '?' || how == '!')
-            told = length == 2 || (finding->number[c[1] - '0'] != 0) == (how == '?');
-        else if (told)
-            put_place(w, c, length, finding);
-        c += length + 1;
-    }
-}
-
 static const char *message_of(const imk_finding *finding)
 {
     for (size_t k = 0; k < sizeof messages / sizeof messages[0]; k++)
@@ -642,31 +540,23 @@ static const char *message_of(const imk_finding *finding)
     return finding->code;
 }
 
-static size_t finish(writing *w, const char *message, const imk_finding *finding)
-{
-    put_message(w, message, finding);
-    if (w->size > 0)
-        w->text[w->length < w->size ? w->length : w->size - 1] = '\0';
-    return w->length;
-}
-
 size_t imk_finding_text(const imk_finding *finding, char *text, size_t size)
 {
-    writing w = {text, size, 0, "the record", "the model"};
-    return finish(&w, message_of(finding), finding);
+    imki_finding_writing w = {text, size, 0, "the record", "the model"};
+    return imki_finding_fill(&w, message_of(finding), finding);
 }
 
 size_t imk_finding_message(const imk_finding *finding, const char *record, const char *model,
                            char *text, size_t size)
 {
     const char *message = message_of(finding);
-    writing w = {text, size, 0, record ? record : "the record", model};
+    imki_finding_writing w = {text, size, 0, record ? record : "the record", model};
     if (record && finding->level == IMK_FINDING_FAILURE && !strstr(message, "{record}") &&
         !strstr(message, "{model}")) {
-        put(&w, record, strlen(record));
-        put(&w, ": ", 2);
+        imki_finding_put(&w, record, strlen(record));
+        imki_finding_put(&w, ": ", 2);
     }
-    return finish(&w, message, finding);
+    return imki_finding_fill(&w, message, finding);
 }
 
 const char *imk_finding_code(const imk_finding *finding)

@@ -35,21 +35,6 @@ static void store_values(const imki_work *w, imk_identification *result)
     result->log_likelihood = fit->log_likelihood;
 }
 
-/* Everything that was chosen, with white noise, bias instability, random walk and the term itself
- * free as well. */
-void imki_intervals_free(imki_work *w, int term)
-{
-    static const bool always[IMK_NOISE_TERMS] = {false, true, true, true, false};
-    imki_fit *fit = w->fit;
-    for (int j = 0; j < IMKI_FIRST_GAUSS_MARKOV; j++)
-        if ((always[j] || j == term) && !fit->active[j]) {
-            fit->active[j] = true;
-            fit->amount[j] = 1e-6 * w->bands->power[0] / fit->shape[j][0];
-        }
-    fit->ramp_active = fit->ramp_active || term == IMK_NOISE_RAMP;
-    imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
-}
-
 /* Interval of a strength or the ramp around the maximum at which the fit is. */
 static void interval_at(const imki_work *w, int held, double drop, imk_estimate *e)
 {
@@ -60,16 +45,6 @@ static void interval_at(const imki_work *w, int held, double drop, imk_estimate 
     e->upper = imki_interval_end(&p, centre, step, HUGE_VAL);
     e->lower =
         centre == 0 && !ramp ? 0 : imki_interval_end(&p, centre, -step, ramp ? -HUGE_VAL : 0);
-}
-
-void imki_quantization_switch(imki_work *w)
-{
-    imki_fit *fit = w->fit;
-    const bool on = !fit->active[IMK_NOISE_QUANTIZATION];
-    fit->active[IMK_NOISE_QUANTIZATION] = on;
-    fit->amount[IMK_NOISE_QUANTIZATION] =
-        on ? 0.1 * fit->amount[IMK_NOISE_WHITE] * w->bands->dt * w->bands->dt : 0;
-    imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
 }
 
 /* Whether quantization was called present, just or just not, moves white noise by more than its

@@ -5,6 +5,31 @@
 
 #include <math.h>
 
+/* Everything that was chosen, with white noise, bias instability, random walk and the term itself
+ * free as well. */
+void imki_intervals_free(imki_work *w, int term)
+{
+    static const bool always[IMK_NOISE_TERMS] = {false, true, true, true, false};
+    imki_fit *fit = w->fit;
+    for (int j = 0; j < IMKI_FIRST_GAUSS_MARKOV; j++)
+        if ((always[j] || j == term) && !fit->active[j]) {
+            fit->active[j] = true;
+            fit->amount[j] = 1e-6 * w->bands->power[0] / fit->shape[j][0];
+        }
+    fit->ramp_active = fit->ramp_active || term == IMK_NOISE_RAMP;
+    imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
+}
+
+void imki_quantization_switch(imki_work *w)
+{
+    imki_fit *fit = w->fit;
+    const bool on = !fit->active[IMK_NOISE_QUANTIZATION];
+    fit->active[IMK_NOISE_QUANTIZATION] = on;
+    fit->amount[IMK_NOISE_QUANTIZATION] =
+        on ? 0.1 * fit->amount[IMK_NOISE_WHITE] * w->bands->dt * w->bands->dt : 0;
+    imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
+}
+
 /* Signed root of twice the fall of the likelihood, less what it is at the interval's end: nearly
  * linear in the place. The fit is left at the place, so that the next one starts from there. */
 double imki_interval_beyond(const imki_interval_profile *p, double place)

@@ -63,17 +63,6 @@ static void stretch_advance(stretch *s, size_t assessed_end)
     s->margin = assessed_end - keep_from;
 }
 
-static void insertion_sort(double *a, size_t count)
-{
-    for (size_t i = 1; i < count; i++) {
-        const double value = a[i];
-        size_t j = i;
-        for (; j > 0 && a[j - 1] > value; j--)
-            a[j] = a[j - 1];
-        a[j] = value;
-    }
-}
-
 /* Median of the samples around one of the buffer, and of their distances from it (`spread` may be
  * NULL). At the ends of the record the window is the first or last one. */
 static double level_around(const stretch *s, size_t i, double *spread)
@@ -84,12 +73,12 @@ static double level_around(const stretch *s, size_t i, double *spread)
     double sorted[WINDOW] = {0};
     for (size_t k = 0; k < size; k++)
         sorted[k] = s->value[from + k];
-    insertion_sort(sorted, size);
+    imki_sort(sorted, size);
     const double level = sorted[size / 2];
     if (spread) {
         for (size_t k = 0; k < size; k++)
             sorted[k] = fabs(sorted[k] - level);
-        insertion_sort(sorted, size);
+        imki_sort(sorted, size);
         *spread = 1.4826 * sorted[size / 2];
     }
     return level;
@@ -154,7 +143,7 @@ static double distance_at(size_t n, const double *samples, size_t from)
     }
     if (size < WINDOW)
         return -1;
-    insertion_sort(sorted, WINDOW);
+    imki_sort(sorted, WINDOW);
     return fabs(middle - sorted[REACH]);
 }
 
@@ -225,7 +214,7 @@ imk_screen_count imki_outliers_find(size_t n, const double *samples, const imki_
             double sorted[BLOCK];
             for (size_t k = 0; k < BLOCK; k++)
                 sorted[k] = s.value[i + k];
-            insertion_sort(sorted, BLOCK);
+            imki_sort(sorted, BLOCK);
             const double level = sorted[BLOCK / 2];
             for (size_t k = i; k < i + BLOCK; k++)
                 if (fabs(s.value[k] - level) > 0.5 * rule->threshold)

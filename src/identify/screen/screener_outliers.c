@@ -39,27 +39,16 @@ typedef struct stretch {
     double shoulder, threshold;
 } stretch;
 
-static void insertion_sort(double *a, size_t count)
-{
-    for (size_t i = 1; i < count; i++) {
-        const double value = a[i];
-        size_t j = i;
-        for (; j > 0 && a[j - 1] > value; j--)
-            a[j] = a[j - 1];
-        a[j] = value;
-    }
-}
-
 /* Median of some values, at most WINDOW, and the scale of their distances from it. */
 static double level_of(const double *value, size_t size, double *spread)
 {
     double sorted[WINDOW] = {0};
     memcpy(sorted, value, size * sizeof *value);
-    insertion_sort(sorted, size);
+    imki_sort(sorted, size);
     const double level = sorted[size / 2];
     for (size_t k = 0; k < size; k++)
         sorted[k] = fabs(sorted[k] - level);
-    insertion_sort(sorted, size);
+    imki_sort(sorted, size);
     *spread = 1.4826 * sorted[size / 2];
     return level;
 }
@@ -187,7 +176,7 @@ static void assess_block(imk_screener *s, const stretch *in, size_t i)
 {
     double sorted[BLOCK];
     memcpy(sorted, in->value + i, sizeof sorted);
-    insertion_sort(sorted, BLOCK);
+    imki_sort(sorted, BLOCK);
     const double level = sorted[BLOCK / 2];
     for (size_t k = i; k < i + BLOCK; k++)
         if (fabs(in->value[k] - level) > 0.5 * in->shoulder)

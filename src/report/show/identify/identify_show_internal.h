@@ -7,7 +7,7 @@
 
 #include "report/growing_text_internal.h"
 
-/* ---- verdicts: verdict_show.c ---------------------------------------------------------------- */
+/* ---- verdicts: verdict_messages.c ------------------------------------------------------------ */
 
 void imki_verdict_add(imk_verdict *verdict, imk_finding_level level, const char *code,
                       const char *format, ...) __attribute__((format(printf, 4, 5)));
@@ -24,6 +24,9 @@ void imki_verdict_data(const imk_verdict *verdict, imk_result *result);
 void imki_verdict_boxes(const imk_verdict *verdict, imk_result *result);
 /* Lines of the whole messages, or of a few words each and at most 120 in all. */
 void imki_verdict_lines(const imk_verdict *verdict, bool verbose, imk_result *result);
+/* verdict_samples.c, verdict_terms.c: what holds on some channels. */
+void imki_assess_samples(imk_verdict *verdict, const imk_identify_log *log);
+void imki_assess_terms(imk_verdict *verdict, const imk_identify_log *log);
 /* verdict_vibration.c: tones that several channels share. */
 void imki_assess_vibration(imk_verdict *verdict, const imk_identify_log *log);
 /* verdict_words.c */

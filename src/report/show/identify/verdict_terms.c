@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the estimates of some channels are worth: terms that the record does not tell apart or holds
+ * too little of, and what the model has besides the usual terms. */
+#include "verdict_concern_internal.h"
+
+#include <math.h>
+
+/* The joint estimate is not of one record alone. */
+static bool find_short(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    (void)channel, (void)detail;
+    return !log->settings.summarise;
+}
+
+static bool find_resolution(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const double step = log->result[channel].resolution;
+    const imk_unit unit = imki_concern_unit(log, channel, step);
+    if (step > 0)
+        imki_text_add(detail, "step %.3g %s", step / unit.scale, unit.text);
+    return true;
+}
+
+static bool find_validity(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    if (isfinite(r->valid_from))
+        imki_text_add(detail, "from %.3g s to %.3g s", r->valid_from, r->valid_to);
+    else
+        imki_text_put(detail, "nowhere");
+    return true;
+}
+
+static bool find_lines(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    for (int k = 0; k < r->sinusoid_count && k < 3; k++) {
+        const imk_unit unit = imki_concern_unit(log, channel, r->sinusoid[k].amplitude);
+        imki_text_add(detail, "%s%.4g Hz of %.3g %s", k ? ", " : "", r->sinusoid[k].frequency,
+                      r->sinusoid[k].amplitude / unit.scale, unit.text);
+    }
+    imki_text_put(detail, r->sinusoid_count > 3 ? ", more" : "");
+    return true;
+}
+
+static bool find_resonance(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    if (r->resonance_count > 0)
+        imki_text_add(detail, "%.3g Hz, Q %.3g%s", r->resonance[0].frequency, r->resonance[0].q,
+                      r->resonance_count > 1 ? ", more" : "");
+    return true;
+}
+
+/* Terms of a mask, as "bias instability, ramp". */
+static void add_terms(imki_text *text, unsigned terms)
+{
+    static const char *const names[] = {"quantization", "white noise", "bias instability",
+                                        "random walk",  "ramp",        "Gauss-Markov noise"};
+    const char *between = "";
+    for (unsigned k = 0; k < sizeof names / sizeof names[0]; k++)
+        if (terms >> k & 1) {
+            imki_text_add(text, "%s%s", between, names[k]);
+            between = ", ";
+        }
+}
+
+static bool find_ambiguous(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    if (!r->ambiguous || log->settings.summarise)
+        return false;
+    add_terms(detail, r->ambiguous);
+    imki_text_put(detail, r->instead ? " or " : " or none");
+    add_terms(detail, r->instead);
+    return true;
+}
+
+/* Rounding an angle makes white noise of it only where the noise of one sample moves it by about
+ * half a step. */
+static bool find_angle_noise(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    const double step = sqrt(12) * r->term[IMK_NOISE_QUANTIZATION].value;
+    const double moved = r->term[IMK_NOISE_WHITE].value * sqrt(log->record.dt);
+    const bool rounded = fabs(r->resolution * log->record.dt - step) < 0.2 * step;
+    (void)detail;
+    return step > 2.1 * moved && !rounded;
+}
+
+static bool find_undetermined(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    static const char *const names[] = {"quantization", "white noise"};
+    const imk_log_column *column = imk_even_record_column(&log->record, channel);
+    for (int term = IMK_NOISE_QUANTIZATION; term <= IMK_NOISE_WHITE; term++) {
+        const imk_estimate *e = &log->result[channel].term[term];
+        const imk_unit unit = imk_channel_term(column, (imk_noise_term)term).unit;
+        if (e->present && !(e->upper <= 9 * e->lower))
+            imki_text_add(detail, "%s%s %.2g to %.2g %s", detail->size > 0 ? ", " : "", names[term],
+                          e->lower / unit.scale, e->upper / unit.scale, unit.text);
+    }
+    return true;
+}
+
+/* White noise N behind a low-pass filter of time constant T has the spectrum of a Gauss-Markov term
+ * with 2 sigma^2 T = N^2. A sensor without white noise, but with such a term of a few samples, is
+ * more likely one with a filter; so is one with a term that is not certain and a tenth of N^2
+ * large. */
+static bool find_behind_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const double few = 10, matters = 0.1;
+    const imk_identification *r = &log->result[channel];
+    const imk_estimate *n = &r->term[IMK_NOISE_WHITE];
+    const double white = n->present ? n->value : 0;
+    const imk_log_column *column = imk_even_record_column(&log->record, channel);
+    const imk_unit unit = imk_channel_term(column, IMK_NOISE_WHITE).unit;
+    const bool alone = r->resonance_count == 0 || r->filter.bandwidth > 0;
+    for (int i = 0; i < r->gauss_markov_count && alone; i++) {
+        const imk_estimate *sigma = &r->gauss_markov[i].sigma;
+        const double time = r->gauss_markov[i].correlation_time.value;
+        const double behind = 2 * sigma->value * sigma->value * time;
+        const bool certain = n->present && sigma->lower > 0;
+        if (time < few * log->record.dt && !certain && behind > matters * white * white) {
+            imki_text_add(detail, "%.3g %s behind a filter of %.2g Hz",
+                          sqrt(behind + white * white) / unit.scale, unit.text,
+                          1 / (6.283185307179586 * time));
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool find_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_low_pass filter = log->result[channel].filter;
+    imki_text_add(detail, "%.3g Hz, ", filter.bandwidth);
+    if (filter.damping > 0)
+        imki_text_add(detail, "second order, damping %.2g", filter.damping);
+    else
+        imki_text_put(detail, "first order");
+    return true;
+}
+
+/* What is looked for, and what it means, in the order in which it is told. */
+static const imki_concern concerns[] = {
+    {IMK_VERDICT_SHORT, find_short, 0, IMK_FINDING_NOTE, "short",
+     "the record is too short for the slowest terms: they are bounded, not measured; log for "
+     "longer",
+     NULL},
+    {IMK_VERDICT_COARSE, find_resolution, 0, IMK_FINDING_WARNING, "coarse",
+     "the output step is so large against the noise that rounding errors are not white, so white "
+     "noise and quantization are unreliable; log with more digits or a smaller range",
+     NULL},
+    {0, find_behind_filter, 0, IMK_FINDING_WARNING, "behind_filter",
+     "a Gauss-Markov term of a few samples looks like white noise behind a low-pass filter; if the "
+     "sensor or its driver filters, white noise is the first value, and the term is the filter; "
+     "log "
+     "unfiltered samples, or several times as many in a second",
+     NULL},
+    {IMK_VERDICT_UNDETERMINED, find_undetermined, 0, IMK_FINDING_WARNING, "undetermined",
+     "filter, resonances or other terms can take the place of this term, so its value is hardly "
+     "known; use the interval, or log faster or for longer",
+     NULL},
+    {IMK_VERDICT_SATURATED, NULL, 0, IMK_FINDING_WARNING, "saturated",
+     "samples stick at an extreme value: the range is too small or the sensor was moved", NULL},
+    {IMK_VERDICT_FROZEN, NULL, 0, IMK_FINDING_WARNING, "frozen",
+     "long runs of one value: samples are repeated, so the true sample rate is lower than the "
+     "log's",
+     NULL},
+    {IMK_VERDICT_WARM_UP, NULL, 0, IMK_FINDING_WARNING, "warm_up",
+     "the start drifts differently from the rest; switch the sensor on earlier, or leave out the "
+     "first minutes",
+     NULL},
+    {IMK_VERDICT_MISFIT, find_validity, 0, IMK_FINDING_WARNING, "misfit",
+     "the model explains the record only over these averaging times; the log also contains "
+     "something else (vibration, filtering, another process)",
+     NULL},
+    {IMK_VERDICT_LINES, find_lines, 0, IMK_FINDING_NOTE, "lines",
+     "spectral lines, from vibration or interference, are modelled separately as sinusoids", NULL},
+    {IMK_VERDICT_RESONANCE, find_resonance, 0, IMK_FINDING_NOTE, "resonance",
+     "a resonance of the structure or the sensor is modelled separately", NULL},
+    {0, find_angle_noise, 0, IMK_FINDING_NOTE, "angle_noise",
+     "the quantization is white noise of the angle, and the output is not rounded to such steps; "
+     "simulate rounds, so a twin has less noise at the shortest averaging times",
+     NULL},
+    {0, find_ambiguous, 0, IMK_FINDING_NOTE, "ambiguous",
+     "the record cannot tell which of these terms it holds; the intervals hold for either", NULL},
+    {IMK_VERDICT_FILTERED, find_filter, 0, IMK_FINDING_NOTE, "filtered",
+     "the output is low-pass filtered within the band; the filter is in the model", NULL},
+};
+
+void imki_assess_terms(imk_verdict *v, const imk_identify_log *log)
+{
+    for (size_t k = 0; k < sizeof concerns / sizeof concerns[0]; k++)
+        imki_assess_concern(v, log, &concerns[k]);
+}
