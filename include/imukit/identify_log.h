@@ -103,6 +103,15 @@ typedef struct imk_term_display {
 /** Names and units of a noise term for the kind of sensor of the column. */
 IMK_API imk_term_display imk_channel_term(const imk_log_column *column, imk_noise_term term);
 
+/** Where the sensor was moved, on any channel; times from the first row that was read [s]. */
+typedef struct imk_identify_moves {
+    bool moved;
+    double first, end;             /**< of the movements: the first begins, the last one ends */
+    double still_first, still_end; /**< longest part without, to 0.1 s inwards */
+} imk_identify_moves;
+/** The movements that the screening of the channels found. */
+IMK_API imk_identify_moves imk_identify_log_moves(const imk_identify_log *log);
+
 /** Free the samples, which take most of the memory; the results stay. */
 IMK_API void imk_identify_log_let_samples_go(imk_identify_log *result);
 

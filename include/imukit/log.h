@@ -50,7 +50,7 @@ typedef struct imk_log_settings {
     const char *columns; /**< names for a file without header: "time,gyro_x,gyro_y,…"; "-" skips */
     /** Units for columns without a unit in the header. */
     const char *gyro_unit, *accel_unit, *time_unit, *temperature_unit;
-    double rate;      /**< sampling rate [Hz]; required without a time column; 0: from the times */
+    double rate; /**< sampling rate [Hz]; required without a time column; 0: from the times */
     /** Only rows from `after` to `before` seconds from the first one are read; 0: from the first,
      *  to the last. Times stay as they are; findings are of the rows read. */
     double after, before;

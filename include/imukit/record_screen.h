@@ -55,9 +55,9 @@ typedef struct imk_screen {
                     where the tails of the noise go on evenly, few where the outliers are faults */
     double core; /**< standard deviation within 32 samples by the median, which tails do not move,
                     over that by the mean square; 1 for normal noise */
-    double noise_scatter;   /**< relative standard deviation of the variance within 32 samples over
-                               the record, by its scatter between batches, without
-                             outliers that are none of the noise; 0: too short */
+    double noise_scatter;  /**< relative standard deviation of the variance within 32 samples over
+                              the record, by its scatter between batches, without
+                            outliers that are none of the noise; 0: too short */
     imk_screen_count lost; /**< zeros outside the noise, as loggers write them for lost rows; taken
                               out with the stuck samples, but none of them */
     double zeros; /**< share of the samples by which zeros among the noise are more than their
@@ -95,6 +95,12 @@ typedef struct imk_screen {
                              0: none is worth a look */
     size_t possible_step_place;
     double possible_step_square; /**< its size over its standard deviation, squared */
+
+    imk_screen_count moved; /**< samples in stretches in which the sensor was moved; then steps,
+                               warm-up and temperature are not looked for */
+    size_t moved_end;       /**< behind the last of them; n when there is none */
+    size_t still_first, still_end; /**< longest stretch in which it was not: samples first … end - 1
+                                    */
 
     double cycle_amplitude; /**< of a level that goes up and down regularly; 0: it does not */
     double cycle_period;    /**< [s] */

@@ -116,6 +116,10 @@ static const struct message {
                        "to identify noise; leave it out with --columns, or check the log"},
     {"too_few_to_identify",
      "{1} rows are too few to identify noise: at least 256 are needed; record minutes to hours"},
+    {"moved",
+     "the sensor was moved between {0.4g} s and {1.4g} s, so that {name} holds no noise that "
+     "could be identified; the longest part at rest is read by --after {2g}s --before "
+     "{3g}s"},
     {"column_failed", "column {name}: {0t}"},
     {"allan_needs_all",
      "column {name} has {0} samples missing or taken out, and --method allan needs all of them; "

@@ -191,6 +191,39 @@ static void find_cycle(imk_screener *s)
     f->cycle_period = (double)n * length / cycle.periods;
 }
 
+/* Where the sensor was moved, by the samples. In few means slow movements are plain, in many the
+ * short ones, and where it had not settled. */
+static void find_moves(imk_screener *s)
+{
+    enum { MOST = 16, EDGE = 4 };
+    static const size_t means[] = {IMKI_SCREEN_LEVELS, 512, 128};
+    imk_screen *f = &s->found;
+    double *mean = s->room, *other = mean + IMKI_SCREEN_LEVELS, empty = 0;
+    imki_move move[MOST];
+    bool thermal;
+    size_t still = 0, count = 0, n = 0, length = 0;
+    for (size_t k = 0; count == 0 && k < sizeof means / sizeof means[0]; k++) {
+        n = take_means(s, means[k], mean, other, &thermal, &empty);
+        length = imki_levels_length(&s->levels, means[k]);
+        const double least = length > 0 ? f->resolution / sqrt((double)length) : 0;
+        count = imki_moves_find(n, mean, empty, least, k == 0 ? EDGE : 0, other, move, MOST);
+    }
+    f->moved = (imk_screen_count){.runs = count, .first = f->n};
+    f->moved_end = f->still_end = f->n;
+    for (size_t k = 0; k <= count; k++) {
+        const size_t first = k < count ? move[k].first * length : f->n;
+        if (k == 0 || first - still > f->still_end - f->still_first) {
+            f->still_first = still;
+            f->still_end = first;
+        }
+        if (k == count)
+            break;
+        still = f->moved_end = move[k].end < n ? move[k].end * length : f->n;
+        f->moved.count += still - first;
+        f->moved.first = k == 0 ? first : f->moved.first;
+    }
+}
+
 /* An exponential at the start and a jump explain each other in part: what gains more is right. */
 static void find_slow(imk_screener *s)
 {
@@ -223,8 +256,12 @@ void imki_screen_conclude(imk_screener *s)
     find_saturation(s);
     find_tails(s);
     f->interpolated = imki_cycles_find(&s->cycles, 0.1 * s->settings.significance, f->sensor_rate);
-    find_slow(s);
-    find_cycle(s);
+    f->steps.first = f->possible_step_place = f->n;
+    find_moves(s);
+    if (f->moved.count == 0) {
+        find_slow(s);
+        find_cycle(s);
+    }
     /* The room holds the temperatures from here on, for imk_screener_trend(). */
     const imki_levels *l = &s->levels;
     double empty;

@@ -221,6 +221,19 @@ size_t imki_jumps_room(size_t n);
 size_t imki_jumps_find(size_t n, double *mean, double empty, double significance, double *room,
                        size_t most, size_t *place, double *size, double *gain, imki_jump *possible);
 
+/* level_moves.c */
+typedef struct imki_move {
+    size_t first, end; /* means first … end - 1 */
+} imki_move;
+/* Stretches in which the sensor was moved, in order.
+ * @param empty  share of the means that are no measurements
+ * @param least  a change that is none, however small the others are
+ * @param edge   means at either end of which one change is enough
+ * @param room   n doubles
+ * @return how many, at most `most` */
+size_t imki_moves_find(size_t n, const double *mean, double empty, double least, size_t edge,
+                       double *room, imki_move *move, size_t most);
+
 /* clipped_normal.c */
 /* A normal distribution of which everything beyond two limits is put onto them. */
 typedef struct imki_clipped {

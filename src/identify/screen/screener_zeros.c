@@ -8,9 +8,9 @@
  *
  * Zeros among the noise may be too many: a driver that puts small values to zero, or cuts values
  * off toward zero. How many are due, the values beside zero tell. Where the step q between values
- * is fine, as many as the mean of those up to k = scale/(2 q) steps on either side; where it is
- * coarse, by the logarithm of the numbers n_1, n_2 one and two steps away, which is a parabola for
- * Gaussian noise:
+ * is fine, as many as the mean of those up to k = scale/(2 q) steps on either side; where there is
+ * no step, and no other value comes more than three times, none; where it is coarse, by the
+ * logarithm of the numbers n_1, n_2 one and two steps away, which is a parabola for Gaussian noise:
  *
  *     ln n_0 = (4 ln n_1 - ln n_2)/3
  *
@@ -21,7 +21,7 @@
 
 #include <math.h>
 
-enum { STEPS = 3, FINE = 3, COUNTED_MIN = 25 };
+enum { STEPS = 3, REPEATS = 3, FINE = 3, COUNTED_MIN = 25 };
 
 static const double apart = 0.25; /* of the range: so far from zero are the other samples */
 /* Zeros among the noise are too many when they are more than due by these. */
@@ -82,6 +82,22 @@ static double count_near(const imk_screener *s, double limit)
     return (double)near;
 }
 
+/* How often the most frequent size of the values within three scales of zero comes. */
+static size_t most_frequent(imk_screener *s)
+{
+    size_t count = 0, most = 0, run = 0;
+    for (size_t i = 0; i < s->count[0]; i++) {
+        s->value[count] = fabs(s->clean[i]);
+        count += s->value[count] > 0 && s->value[count] < 3 * s->scale;
+    }
+    imki_sort(s->value, count);
+    for (size_t i = 0; i < count; i++) {
+        run = i > 0 && s->value[i] == s->value[i - 1] ? run + 1 : 1;
+        most = run > most ? run : most;
+    }
+    return most;
+}
+
 void imki_screen_zeros(imk_screener *s)
 {
     imki_zeros *z = &s->zeros;
@@ -95,11 +111,15 @@ void imki_screen_zeros(imk_screener *s)
         z->two += 0.5 * (two - one);
         return;
     }
-    const double reach = step > 0 ? floor(0.5 * s->scale / step) : 0;
-    const double due = reach > 0 ? count_near(s, (reach + 0.5) * step) / (2 * reach) : 0;
+    if (step > 0) {
+        const double reach = floor(0.5 * s->scale / step);
+        const double due = count_near(s, (reach + 0.5) * step) / (2 * reach);
+        z->due += due;
+        z->variance += due + due / (2 * reach);
+    } else if (most_frequent(s) > REPEATS) {
+        return;
+    }
     z->fine += zeros;
-    z->due += due;
-    z->variance += due + (reach > 0 ? due / (2 * reach) : 0);
 }
 
 double imki_zeros_excess(const imki_zeros *z, double present)

@@ -231,8 +231,7 @@ static bool is_needed(const search *s, size_t k)
         const double scatter = test == SLOW ? 0 : scatter_for(s, test, low, high);
         imki_noise_band band = test == SLOW ? s->slow : imki_noise_octave(test);
         band.joined = 1; /* the place is given */
-        if (tries(s, test) *
-                imki_noise_compare(s->map, &band, low, s->boundary[k], high, scatter) <
+        if (tries(s, test) * imki_noise_compare(s->map, &band, low, s->boundary[k], high, scatter) <
             s->significance)
             return true;
     }

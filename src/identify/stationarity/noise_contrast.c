@@ -90,8 +90,8 @@ static void gather(const imk_noise_map *map, const imki_noise_band *band, size_t
     c->variance = degrees > 0 ? within / degrees : 0;
     const double n = c->n[c->count], square = c->square[c->count];
     const double kurtosis = square > 0 ? fourth * n * n / (squared_shares * square * square) : 3;
-    c->degrees = degrees_most * 2 / fmax(2, kurtosis - 1) *
-                 (squared_shares > 0 ? n / squared_shares : 1);
+    c->degrees =
+        degrees_most * 2 / fmax(2, kurtosis - 1) * (squared_shares > 0 ? n / squared_shares : 1);
 }
 
 static double step_of(const columns *c, size_t k, size_t width)

@@ -29,9 +29,8 @@ void imki_noise_shares_find(const imk_identification *identified, double dt, siz
         shares->flicker[j] =
             imk_identification_allan_variance(identified, dt, m, IMK_NOISE_BIAS_INSTABILITY);
         shares->other[j] = fmax(0, all - shares->white[j] - shares->flicker[j]);
-        shares->slow[j] =
-            shares->flicker[j] +
-            imk_identification_allan_variance(identified, dt, m, IMK_NOISE_RANDOM_WALK);
+        shares->slow[j] = shares->flicker[j] + imk_identification_allan_variance(
+                                                   identified, dt, m, IMK_NOISE_RANDOM_WALK);
         for (int i = 0; i < identified->gauss_markov_count; i++) {
             const imk_gauss_markov g = {identified->gauss_markov[i].sigma.value,
                                         identified->gauss_markov[i].correlation_time.value};

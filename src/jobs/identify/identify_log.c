@@ -7,6 +7,7 @@
 #include "jobs/job_internal.h"
 #include "jobs/record/record_check_internal.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -70,6 +71,29 @@ imk_screen_settings imki_screen_settings(const imk_identify_log *log)
     return settings;
 }
 
+imk_identify_moves imk_identify_log_moves(const imk_identify_log *log)
+{
+    size_t first = SIZE_MAX, end = 0, still_first = 0, still_end = SIZE_MAX;
+    for (size_t c = 0; c < log->record.count; c++) {
+        const imk_screen *s = &log->screen[c];
+        if (s->moved.count == 0)
+            continue;
+        first = s->moved.first < first ? s->moved.first : first;
+        end = s->moved_end > end ? s->moved_end : end;
+        still_first = s->still_first > still_first ? s->still_first : still_first;
+        still_end = s->still_end < still_end ? s->still_end : still_end;
+    }
+    if (first == SIZE_MAX)
+        return (imk_identify_moves){.moved = false};
+    still_end = still_end > still_first ? still_end : still_first;
+    const double dt = log->record.dt;
+    return (imk_identify_moves){.moved = true,
+                                .first = (double)first * dt,
+                                .end = (double)end * dt,
+                                .still_first = ceil(10 * (double)still_first * dt) / 10,
+                                .still_end = floor(10 * (double)still_end * dt) / 10};
+}
+
 imk_status imki_identify_explain(imk_identify_log *log, size_t channel, imk_status status,
                                  const imk_error *why, imk_error *error)
 {
@@ -86,6 +110,10 @@ imk_status imki_identify_explain(imk_identify_log *log, size_t channel, imk_stat
         return imki_fail(&log->findings, error, status,
                          finite < rows ? "too_few_values" : "too_few_to_identify", name,
                          IMKI_NUMBERS(finite, rows));
+    const imk_identify_moves moves = imk_identify_log_moves(log);
+    if (status == IMK_ERROR_NO_CONVERGENCE && moves.moved)
+        return imki_fail(&log->findings, error, status, "moved", name,
+                         IMKI_NUMBERS(moves.first, moves.end, moves.still_first, moves.still_end));
     imk_error named = *why;
     if (!named.field[0])
         snprintf(named.field, sizeof named.field, "%s", name);

@@ -266,8 +266,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sound),   cmocka_unit_test(test_doubled),
         cmocka_unit_test(test_tenth),   cmocka_unit_test(test_growth),
-        cmocka_unit_test(test_flicker), cmocka_unit_test(test_weak_flicker), cmocka_unit_test(test_band),
-        cmocka_unit_test(test_tone),    cmocka_unit_test(test_bursts),
-        cmocka_unit_test(test_tails),   cmocka_unit_test(test_refusals)};
+        cmocka_unit_test(test_flicker), cmocka_unit_test(test_weak_flicker),
+        cmocka_unit_test(test_band),    cmocka_unit_test(test_tone),
+        cmocka_unit_test(test_bursts),  cmocka_unit_test(test_tails),
+        cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -112,10 +112,13 @@ static void screening_data(const imk_identify_log *log, size_t channel, imk_unit
     count_data(result, "missing", &s->missing);
     count_data(result, "outliers", &s->outliers);
     count_data(result, "stuck", &s->stuck);
+    count_data(result, "lost", &s->lost);
     count_data(result, "saturated", &s->saturated);
     count_data(result, "steps", &s->steps);
+    count_data(result, "moved", &s->moved);
     warm_up_data(s, unit, result);
     temperature_data(s, unit, result);
+    imk_result_number(result, "zeros", s->zeros);
     imk_result_end(result);
 }
 

@@ -57,6 +57,20 @@ static bool find_dead(const imk_identify_log *log, size_t channel, imki_text *de
     return (double)s->stuck.count > 0.05 * (double)s->n;
 }
 
+static bool find_lost(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    imki_text_add(detail, "%zu of %zu", s->lost.count, s->n);
+    return s->lost.count > 0;
+}
+
+static bool find_zeros(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    imki_text_add(detail, "%.3g %% of the samples", 100 * s->zeros);
+    return s->zeros > 0;
+}
+
 static bool find_saturated(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_screen *s = &log->screen[channel];
@@ -213,6 +227,14 @@ static const imki_concern concerns[] = {
      "still; "
      "look for the cause, and record again",
      NULL},
+    {0, find_lost, IMK_SCREEN_STUCK, IMK_FINDING_NOTE, "lost",
+     "0 far outside the noise, as a logger writes it for a row that was lost; left out",
+     "0 far outside the noise, as a logger writes it for a row that was lost; kept"},
+    {0, find_zeros, 0, IMK_FINDING_WARNING, "zeros",
+     "so many zeros are more than the values beside zero tell: lost rows are written as 0, or the "
+     "driver has a dead band or cuts values off toward zero instead of rounding them; the white "
+     "noise may be too low by up to this share",
+     NULL},
     {0, find_saturated, IMK_SCREEN_SATURATED, IMK_FINDING_NOTE, "at_limit",
      "samples at the end of the range; the values are those of normal noise before it was cut off "
      "there, and their intervals allow for that assumption",
@@ -265,9 +287,27 @@ static const imki_concern concerns[] = {
      NULL},
 };
 
+/* Nothing that was estimated is of a sensor at rest. */
+static void assess_moves(imk_verdict *v, const imk_identify_log *log)
+{
+    const imk_identify_moves m = imk_identify_log_moves(log);
+    uint64_t channels = 0;
+    for (size_t c = 0; c < log->record.count; c++)
+        channels |= (uint64_t)(log->screen[c].moved.count > 0) << c;
+    if (!m.moved)
+        return;
+    imki_verdict_add(v, IMK_FINDING_FAILURE, "moved",
+                     "the sensor was moved, or had not settled, between %.4g s and %.4g s; the "
+                     "longest part at rest is read by --after %gs --before %gs.",
+                     m.first, m.end, m.still_first, m.still_end);
+    imki_verdict_about(v, &log->record, channels);
+}
+
 /* That samples are missing is known without screening them. */
 void imki_assess_samples(imk_verdict *v, const imk_identify_log *log)
 {
+    if (log->screened)
+        assess_moves(v, log);
     for (size_t k = 0; k < sizeof concerns / sizeof concerns[0]; k++)
         if (log->screened || concerns[k].find == find_missing)
             imki_assess_concern(v, log, &concerns[k]);

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A sensor that was moved: at the start, in the middle, at the end; and what is no movement. */
+#include "check.h"
+#include "imukit/noise.h"
+#include "imukit/record_screen.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { N = 120000 };
+
+static double rate[N];
+static char memory[1 << 20];
+
+static void make(uint64_t seed, double flicker, double walk)
+{
+    static imk_white_state w;
+    static imk_flicker_state f;
+    static imk_random_walk_state k;
+    const imk_random random = imk_random_seeded(seed);
+    memset(rate, 0, sizeof rate);
+    imk_white_start(&w, 1, 1, random, 1);
+    imk_white_add(&w, N, rate);
+    imk_flicker_start(&f, flicker, 1, random, 2);
+    imk_flicker_add(&f, N, rate);
+    imk_random_walk_start(&k, walk, 1, random, 3);
+    imk_random_walk_add(&k, N, rate);
+}
+
+static imk_screen screen(void)
+{
+    imk_screen_settings settings = imk_screen_default();
+    settings.dt = 0.01;
+    imk_screen found;
+    CHECK_OK(imk_screen_channel(&settings, N, rate, &found, memory, sizeof memory, NULL));
+    return found;
+}
+
+/* Swings of some seconds in samples first … end - 1. */
+static void swing(size_t first, size_t end, double amplitude)
+{
+    for (size_t i = first; i < end; i++)
+        rate[i] += amplitude * sin(0.013 * (double)(i - first) + 0.4);
+}
+
+static void test_moved(void **state)
+{
+    (void)state;
+    static const size_t place[][2] = {{0, 150},       {0, 3000},   {0, 40000},  {50000, 50800},
+                                      {70000, 73000}, {118000, N}, {N - 200, N}};
+    for (size_t k = 0; k < sizeof place / sizeof *place; k++)
+        for (uint64_t seed = 0; seed < 4; seed++) {
+            const size_t first = place[k][0], end = place[k][1];
+            make(seed, seed % 2 ? 0.3 : 0, 0.001);
+            swing(first, end, 60);
+            const imk_screen found = screen();
+            assert_int_equal(found.moved.runs, 1);
+            /* To three means of 64 samples, and those before and behind. */
+            CHECK_CLOSE((double)found.moved.first, (double)first, 320);
+            CHECK_CLOSE((double)found.moved_end, (double)end, 320);
+            assert_true(found.moved.first <= first && found.moved_end >= end);
+            assert_int_equal(found.moved.count, found.moved_end - found.moved.first);
+            const bool front = first > N - end; /* where the longer rest is */
+            assert_int_equal(found.still_first, front ? 0 : found.moved_end);
+            assert_int_equal(found.still_end, front ? found.moved.first : N);
+            assert_true(!found.warm_up && found.steps.count == 0);
+        }
+}
+
+static void test_twice(void **state)
+{
+    (void)state;
+    make(9, 0.3, 0);
+    swing(0, 2000, 60);
+    swing(90000, 91000, 60);
+    const imk_screen found = screen();
+    assert_int_equal(found.moved.runs, 2);
+    assert_in_range(found.still_first, 2000, 2320);
+    assert_in_range(found.still_end, 89680, 90000);
+}
+
+/* Slow noise however strong, tones, jumps, a warm-up, bursts of noise and holes are no movement. */
+static void test_still(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 40; seed++) {
+        const bool bursts = seed % 5 == 3; /* of white noise */
+        make(seed, bursts ? 0 : seed % 4 == 0 ? 5 : 0.3, !bursts && seed % 4 == 1 ? 0.3 : 0);
+        for (size_t i = 0; i < N; i++) {
+            const double x = (double)i;
+            rate[i] += seed % 5 == 0   ? 20 * sin(0.002 * x)
+                       : seed % 5 == 1 ? (i > 30000 ? 15 : 0) + (i > 80000 ? 9 : 0)
+                       : seed % 5 == 2 ? 30 * exp(-x / 6000)
+                                       : 0;
+            rate[i] *= bursts && i % 10000 < 900 ? 6 : 1;
+            if (seed % 5 == 4 && i % 30000 < 20000 && i % 997 > 3)
+                rate[i] = (double)NAN;
+        }
+        assert_int_equal(screen().moved.count, 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_moved),
+        cmocka_unit_test(test_twice),
+        cmocka_unit_test(test_still),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
