@@ -301,6 +301,41 @@ def clock_forward(record, rng, strength):
     record.time[int(rng.uniform(0.3, 0.7) * record.rows):] += strength
 
 
+# ---- zeros, movement, averages ---------------------------------------------------------------
+
+
+def dead_band(record, rng, strength):
+    for column in record.columns:
+        small = np.abs(column.values) < strength * sigma_of(record, column)
+        column.values[small] = 0
+
+
+def cut_off(record, rng, strength):
+    """Cut off toward zero, not rounded."""
+    for column in record.columns:
+        step = strength * sigma_of(record, column)
+        column.values = np.trunc(column.values / step) * step
+
+
+def lost_rows(record, rng, strength):
+    """Rows of zeros, one to twenty at a time."""
+    left = int(strength * record.rows)
+    while left > 0:
+        run = min(left, int(rng.integers(1, 21)))
+        first = int(rng.integers(0, record.rows - run))
+        for column in record.columns:
+            column.values[first:first + run] = 0
+        left -= run
+
+
+def handled(record, rng, strength):
+    """The first 5 s are of a sensor in a hand."""
+    t = seconds(record)[:int(5 / record.dt)]
+    for column in record.columns:
+        swing = np.sin(2 * np.pi * rng.uniform(0.3, 1.5) * t + rng.uniform(0, 6))
+        column.values[:len(t)] += strength * sigma_of(record, column) * swing * (1 - t / 5)
+
+
 # ---- units -----------------------------------------------------------------------------------
 
 
@@ -396,6 +431,14 @@ FAULTS = [
     Fault("stuck", "4", "nb_30min", (0.001, 0.01, 0.1), "share", stuck, "stuck values"),
     Fault("nan_stretches", "3", "nb_30min", (0.01, 0.1, 0.3), "share", nan_stretches,
           "stretches of NaN", harmless="missing independently of their values"),
+    Fault("dead_band", "4", "nb_30min", (0.5, 1, 1.5), "sigma", dead_band,
+          "small values are put to zero"),
+    Fault("cut_off", "4", "nb_30min", (0.1, 0.3, 0.8), "sigma", cut_off,
+          "values are cut off toward zero", factor=lambda s: np.sqrt(1 + s * s / 12)),
+    Fault("lost_rows", "3", "six_g", (0.001, 0.01, 0.05), "share", lost_rows,
+          "lost rows are written as zeros"),
+    Fault("handled", "8", "six_g", (30, 300, 3000), "sigma", handled,
+          "the log begins in a hand"),
     Fault("accel_unit", "10", "temperature", (1 / 9.80665, 1000 / 9.80665, 0.01), "x", wrong_scale,
           "accelerometers in g, mg and Gal under a header of m/s^2"),
     Fault("gyro_unit", "10", "nb_30min", (0.01745329252, 57.29578, 206264.8), "x", wrong_scale,

@@ -5,6 +5,7 @@ import argparse
 import json
 import multiprocessing
 import re
+import signal
 import sys
 import tempfile
 import time
@@ -90,20 +91,32 @@ def work(job):
     return entries
 
 
-def run(settings, tasks, jobs, minutes):
-    results = {"sound": [], "pairs": []}
+def _stop(number, frame):
+    raise KeyboardInterrupt
+
+
+def _collect(pool, todo, minutes, results):
     start = time.time()
+    for done, entries in enumerate(pool.imap_unordered(work, todo), 1):
+        for which, entry in entries:
+            results[which].append(entry)
+        if done % 20 == 0 or done == len(todo):
+            print(f"{done} of {len(todo)} tasks, {time.time() - start:.0f} s", file=sys.stderr)
+        if time.time() - start > 60 * minutes:
+            print(f"stopped after {minutes} minutes", file=sys.stderr)
+            break
+
+
+def run(settings, tasks, jobs, minutes):
+    """What is there when it is interrupted is kept."""
+    results = {"sound": [], "pairs": []}
     todo = [(settings, task) for task in tasks]
-    with multiprocessing.Pool(jobs) as pool:
-        for done, entries in enumerate(pool.imap_unordered(work, todo), 1):
-            for which, entry in entries:
-                results[which].append(entry)
-            if done % 20 == 0 or done == len(todo):
-                print(f"{done} of {len(todo)} tasks, {time.time() - start:.0f} s",
-                      file=sys.stderr)
-            if time.time() - start > 60 * minutes:
-                print(f"stopped after {minutes} minutes", file=sys.stderr)
-                break
+    with multiprocessing.Pool(jobs, signal.signal, (signal.SIGINT, signal.SIG_IGN)) as pool:
+        signal.signal(signal.SIGTERM, _stop)
+        try:
+            _collect(pool, todo, minutes, results)
+        except KeyboardInterrupt:
+            print("interrupted", file=sys.stderr)
     results["sound"].sort(key=lambda e: (e["kind"], e["seed"]))
     results["pairs"].sort(key=lambda e: (e["fault"], e["level"], e["seed"]))
     return results
