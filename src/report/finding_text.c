@@ -3,10 +3,10 @@
  *
  * Braces hold the index of a number of the finding and how to write it: {0} a count, {1g} as %g,
  * {2.1f} as %.1f, {0s} an s unless the count is one, {0a} the name of an Allan statistic, {0t} the
- * text of a status, {0k} gyro or accel, {0p} gyros or accelerometers, {0q} rate or specific force,
- * {0u} a quantity of the unit that is the name. {name} is the name, {other} what stands behind a
- * tab in it; {record} and {model} are what these are called. The text between {2?} and {?} is shown
- * if number 2 is not 0, the text behind {2!} if it is 0. */
+ * text of a status, {0k} gyro or accel, {0p} gyros, accelerometers or magnetometer, {0q} rate or
+ * specific force, {0u} a quantity of the unit that is the name. {name} is the name, {other} what
+ * stands behind a tab in it; {record} and {model} are what these are called. The text between {2?}
+ * and {?} is shown if number 2 is not 0, the text behind {2!} if it is 0. */
 #include "imukit/allan.h"
 #include "imukit/job.h"
 #include "imukit/units.h"
@@ -492,7 +492,7 @@ static const struct message {
                           "log's columns with --columns, and write - for a column to skip"},
     {"compensate:no_sensor", "{record} has no gyro and no accel column: name them with --columns"},
     {"sensor_needed", "{record} has no {0k} columns, which {name} of {model} needs"},
-    {"not_in_model", "{model} describes no {0p}: their columns are copied as they are"},
+    {"not_in_model", "{model} describes no {0p}: the columns are copied as they are"},
     {"no_sensor_in_model", "{model} describes none of the sensors in {record}"},
     {"no_room_for_flags", "there is no room for a column of flags beside {0} others"},
     /* compensate_log.c */
@@ -553,7 +553,9 @@ static void put(writing *w, const char *text, size_t length)
 static const char *sensor_word(double sensor, char how)
 {
     return how == 'k'   ? (sensor == 0 ? "gyro" : "accel")
-           : how == 'p' ? (sensor == 0 ? "gyros" : "accelerometers")
+           : how == 'p' ? (sensor == 0   ? "gyros"
+                           : sensor == 1 ? "accelerometers"
+                                         : "magnetometer")
            : how == 'q' ? (sensor == 0 ? "rate" : "specific force")
                         : NULL;
 }
