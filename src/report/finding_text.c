@@ -29,6 +29,10 @@
     "{0} bad row{0s}, {1} missing sample{1s}: using the longest clean stretch, rows {2} to {3} "   \
     "of "                                                                                          \
     "{4}"
+#define NAME_IT                                                                                    \
+    "{0?}write the unit into the header, such as mag_x [uT]{0!}if that is what it is, name it so " \
+    "with --columns, with a name for each column and - for one to skip{?}{1?} (a sign in a name "  \
+    "does not turn the readings round){?}"
 #define UNORDERED "{0} row{0s} whose time does not increase: left out"
 #define DOUBLED                                                                                    \
     "{0} of {1} rows are the row before them once more, with its time and values: left out"
@@ -36,10 +40,13 @@
 static const struct message {
     const char *code, *text;
 } messages[] = {
-    /* records: even_record.c */
+    /* records: even_record.c, unused_columns.c */
     {"no_rows", "there is a header but no data row"},
     {"no_channel", "there is no column to analyse; name one with --columns, such as gyro_x or "
                    "accel_z"},
+    {"unused_columns", "not used in {record}, although like {other}: {name}; " NAME_IT},
+    {"unused_axis",
+     "{record}: an axis is missing, and {name}, which looks like {other}, is not used; " NAME_IT},
     {"one_row", "there is only one row; record minutes to hours at rest"},
     {"no_interval", "the time column does not increase, so the sampling rate is unknown; leave the "
                     "column out with --columns and state the rate, such as --rate 100Hz"},
