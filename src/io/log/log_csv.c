@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LOOK = 4096 }; /* bytes looked at to tell a text */
+enum { LOOK = 4096 };           /* bytes looked at to tell a text */
+enum { LOOK_AHEAD = 16 << 20 }; /* for the first cell of a column that is not blank */
 
 typedef struct csv {
     imki_log_cells_reader *read_cells;
@@ -160,27 +161,62 @@ static imk_status read_names(imk_log_reader *reader, imk_error *error)
     return status;
 }
 
-/* Columns without meaning here may hold texts: the first row tells. */
-static imk_status find_labels(imk_log_reader *reader, imki_log_piece line, imk_error *error)
+/* What the cells of a row say of columns that are `open`. */
+static imk_status look_at_cells(imk_log_reader *reader, const imki_log_piece *cells, bool *open,
+                                size_t *left, imk_error *error)
 {
     imki_log_layout_read *layout = &reader->layout;
-    imki_log_piece cells[IMK_LOG_COLUMNS_MAX];
     double value;
-    if (imki_log_split(line.begin, line.end, layout->separator, IMK_LOG_COLUMNS_MAX, cells) !=
-        layout->cell_count)
-        return IMK_OK; /* refused when it is read */
     for (size_t i = 0; i < layout->cell_count; i++) {
-        if (layout->cell_column[i] < 0 || cells[i].begin == cells[i].end ||
-            imki_log_piece_is_number(cells[i], &value))
+        if (!open[i] || cells[i].begin == cells[i].end)
             continue;
-        imk_log_column *column = &layout->column[layout->cell_column[i]];
-        column->label = column->quantity == IMK_QUANTITY_OTHER;
-        if (column->label && !reader->labels)
+        open[i] = false;
+        --*left;
+        if (imki_log_piece_is_number(cells[i], &value))
+            continue;
+        layout->column[layout->cell_column[i]].label = true;
+        if (!reader->labels)
             reader->labels = calloc(IMKI_LABELS_MAX, sizeof reader->labels[0]);
-        if (column->label && !reader->labels)
+        if (!reader->labels)
             return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     }
     return IMK_OK;
+}
+
+/* Columns without meaning here may hold texts: the first cell that is not blank tells. What is
+ * wrong with a row is left to be found when it is read. */
+static imk_status find_labels(imk_log_reader *reader, imk_error *error)
+{
+    const imki_log_layout_read *layout = &reader->layout;
+    imki_log_text *text = &reader->text;
+    bool open[IMK_LOG_COLUMNS_MAX] = {false};
+    size_t left = 0;
+    for (size_t i = 0; i < layout->cell_count; i++) {
+        const int column = layout->cell_column[i];
+        open[i] = column >= 0 && layout->column[column].quantity == IMK_QUANTITY_OTHER;
+        left += open[i];
+    }
+    while (left > 0 && text->next - text->hold < LOOK_AHEAD) {
+        imki_log_piece line, cells[IMK_LOG_COLUMNS_MAX];
+        bool whole, found;
+        if (next_line(text, &line, &whole, &found, NULL) != IMK_OK || !found ||
+            imki_log_split(line.begin, line.end, layout->separator, IMK_LOG_COLUMNS_MAX, cells) !=
+                layout->cell_count)
+            return IMK_OK;
+        const imk_status status = look_at_cells(reader, cells, open, &left, error);
+        if (status != IMK_OK)
+            return status;
+    }
+    return IMK_OK;
+}
+
+/* Begin anew with the rows. */
+static void go_back(imki_log_text *text, size_t line)
+{
+    text->next = text->hold;
+    if (text->lines_end < text->next)
+        text->lines_end = text->next;
+    text->line = line;
 }
 
 /* Look at the first row, and the second where the first interval is needed. What is wrong in them
@@ -195,15 +231,11 @@ static imk_status look_at_rows(imk_log_reader *reader, imk_error *error)
     for (; rows < rows_wanted; rows++) {
         imki_log_piece line;
         bool whole, found, not_finite;
-        imk_status status = next_line(&reader->text, &line, &whole, &found, error);
+        const imk_status status = next_line(&reader->text, &line, &whole, &found, error);
         if (status != IMK_OK)
             return status;
         if (!found)
             break;
-        if (rows == 0)
-            status = find_labels(reader, line, error);
-        if (status != IMK_OK)
-            return status;
         if (imki_log_row_read(layout, line, whole, 0, reader->labels, &reader->label_count, values,
                               &not_finite, NULL) != IMK_OK)
             return IMK_OK;
@@ -229,12 +261,12 @@ static imk_status open_csv(imk_log_reader *reader, imk_error *error)
         return status;
     const size_t line = text->line;
     text->hold = text->next;
-    status = look_at_rows(reader, error);
-    text->next = text->hold;
-    if (text->lines_end < text->next)
-        text->lines_end = text->next;
+    status = find_labels(reader, error);
+    go_back(text, line);
+    if (status == IMK_OK)
+        status = look_at_rows(reader, error);
+    go_back(text, line);
     text->hold = NULL;
-    text->line = line;
     return status;
 }
 
