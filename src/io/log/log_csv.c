@@ -68,10 +68,76 @@ static imk_status next_line(imki_log_text *text, imki_log_piece *line, bool *who
     }
 }
 
-static imk_status refuse_no_header(size_t count, imk_error *error)
+/* Begin anew with the rows. */
+static void go_back(imki_log_text *text, size_t line)
+{
+    text->next = text->hold;
+    if (text->lines_end < text->next)
+        text->lines_end = text->next;
+    text->line = line;
+}
+
+/* Only whole numbers in some cells of the first rows, and one beyond 9: most likely counts. */
+static bool look_like_counts(imki_log_text *text, char separator, size_t count, const bool *asked)
+{
+    enum { ROWS = 8 };
+    const size_t line = text->line;
+    bool whole_numbers = true, any = false;
+    text->hold = text->next;
+    for (int row = 0; row < ROWS && whole_numbers; row++) {
+        imki_log_piece at, cells[IMK_LOG_COLUMNS_MAX];
+        bool whole, found;
+        if (next_line(text, &at, &whole, &found, NULL) != IMK_OK || !found ||
+            imki_log_split(at.begin, at.end, separator, IMK_LOG_COLUMNS_MAX, cells) != count)
+            break;
+        for (size_t i = 0; i < count; i++) {
+            const size_t length = (size_t)(cells[i].end - cells[i].begin);
+            size_t digits = 0;
+            for (size_t k = 0; asked[i] && k < length; k++) {
+                const char c = cells[i].begin[k];
+                const bool digit = c >= '0' && c <= '9';
+                digits += digit;
+                whole_numbers = whole_numbers && (digit || c == '-' || c == '+');
+            }
+            any = any || digits > 1;
+        }
+    }
+    go_back(text, line);
+    text->hold = NULL;
+    return whole_numbers && any;
+}
+
+/* What a unit is missing for, and readings that look like counts. */
+static void suggest_counts(imk_log_reader *reader, const imki_log_piece *cells, size_t count,
+                           imk_error *error)
+{
+    imk_log_settings settings = reader->settings;
+    bool asked[IMK_LOG_COLUMNS_MAX] = {false};
+    int sensors = 0; /* 1: gyros, 2: accelerometers lack their unit */
+    settings.gyro_unit = settings.gyro_unit ? settings.gyro_unit : "count";
+    settings.accel_unit = settings.accel_unit ? settings.accel_unit : "count";
+    for (size_t i = 0; i < count; i++) {
+        imk_log_column as_counts, as_stated;
+        const bool sensor = imki_log_column_make(cells[i], &settings, &as_counts, NULL) == IMK_OK &&
+                            (as_counts.quantity == IMK_QUANTITY_ANGULAR_RATE ||
+                             as_counts.quantity == IMK_QUANTITY_SPECIFIC_FORCE);
+        asked[i] = sensor && imki_log_column_make(cells[i], &reader->settings, &as_stated, NULL) ==
+                                 IMK_ERROR_UNIT_MISSING;
+        if (asked[i])
+            sensors |= as_counts.quantity == IMK_QUANTITY_ANGULAR_RATE ? 1 : 2;
+    }
+    if (sensors > 0 && look_like_counts(&reader->text, reader->layout.separator, count, asked))
+        snprintf(error->expected, sizeof error->expected,
+                 "add %s%s%s (the readings are whole numbers; or a unit such as deg/s, g)",
+                 sensors & 1 ? "--gyro-unit count" : "", sensors == 3 ? " " : "",
+                 sensors & 2 ? "--accel-unit count" : "");
+}
+
+static imk_status refuse_no_header(size_t count, bool counts, imk_error *error)
 {
     static const char sensors[] = "gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z";
-    static const char units[] = "--gyro-unit deg/s --accel-unit g";
+    const char *units =
+        counts ? "--gyro-unit count --accel-unit count" : "--gyro-unit deg/s --accel-unit g";
     char expected[160];
     if (count == 6)
         snprintf(expected, sizeof expected, "add --columns %s %s --rate 100Hz", sensors, units);
@@ -84,6 +150,17 @@ static imk_status refuse_no_header(size_t count, imk_error *error)
                  count, units);
     return imk_error_set(error, IMK_ERROR_COLUMN, "", "no header: the first row is all numbers",
                          expected);
+}
+
+/* The first line is a row: of six readings, or of a time and six. */
+static imk_status refuse_headless(imk_log_reader *reader, imki_log_piece line, char separator,
+                                  size_t count, imk_error *error)
+{
+    bool asked[IMK_LOG_COLUMNS_MAX] = {false};
+    for (size_t i = 0; i < count; i++)
+        asked[i] = count == 6 || i > 0;
+    reader->text.next = line.begin;
+    return refuse_no_header(count, look_like_counts(&reader->text, separator, count, asked), error);
 }
 
 /* Names from the settings, with the unit of the file's header where they have none. */
@@ -147,11 +224,13 @@ static imk_status read_names(imk_log_reader *reader, imk_error *error)
     if (settings->columns)
         status = replace_names(settings->columns, !numbers, count, cells, text_of_names, error);
     else if (numbers)
-        status = refuse_no_header(count, error);
+        status = refuse_headless(reader, line, separator, count, error);
     if (status != IMK_OK)
         return status;
     reader->layout.separator = separator;
     status = imki_log_layout_make(cells, count, settings, &reader->layout, error);
+    if (status == IMK_ERROR_UNIT_MISSING && error && !numbers)
+        suggest_counts(reader, cells, count, error);
     if (status != IMK_OK && error && !settings->columns)
         error->line = header_line;
     if (numbers) { /* it was a row */
@@ -208,15 +287,6 @@ static imk_status find_labels(imk_log_reader *reader, imk_error *error)
             return status;
     }
     return IMK_OK;
-}
-
-/* Begin anew with the rows. */
-static void go_back(imki_log_text *text, size_t line)
-{
-    text->next = text->hold;
-    if (text->lines_end < text->next)
-        text->lines_end = text->next;
-    text->line = line;
 }
 
 /* Look at the first row, and the second where the first interval is needed. What is wrong in them

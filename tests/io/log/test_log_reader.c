@@ -455,6 +455,33 @@ static void texts_become_labels(void **state)
     imk_log_free(&log);
 }
 
+/* A unit is not guessed, but of whole numbers it is not deg/s that is suggested. */
+static void counts_are_suggested_as_such(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *due;
+    } logs[] = {
+        {"gyro_x,accel_x,note\n12,-3,0.5\n0,4,0.5\n", "add --gyro-unit count --accel-unit count ("},
+        {"gyro_x [deg/s],accel_x\n1.5,400\n2.5,401\n", "add --accel-unit count ("},
+        {"gyro_x,accel_x\n12,-3\n0.5,4\n", "add --gyro-unit deg/s ("},
+        {"gyro_x,accel_x\n0,0\n0,0\n", "add --gyro-unit deg/s ("},
+        {"1,2,3,4,5,600\n", "--gyro-unit count --accel-unit count --rate"},
+        {"1,2,3,4,5,600\n1,2,3,4,5,6.5\n", "--gyro-unit deg/s --accel-unit g --rate"},
+        {"0.5,1,2,3,4,5,600\n", "--time-unit s --gyro-unit count --accel-unit count"}};
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 2.0;
+    for (size_t k = 0; k < sizeof logs / sizeof logs[0]; k++) {
+        imk_log_reader *reader;
+        imk_error error;
+        assert_int_not_equal(
+            imk_log_open_memory(logs[k].text, strlen(logs[k].text), &settings, &reader, &error),
+            IMK_OK);
+        if (!strstr(error.expected, logs[k].due))
+            fail_msg("%s: %s", logs[k].text, error.expected);
+    }
+}
+
 /* A column that begins blank is what its first other cell says, also far beyond the first window of
  * a text that is not in memory as a whole. */
 static void blank_cells_wait(void **state)
@@ -905,6 +932,7 @@ int main(void)
         cmocka_unit_test(axes_are_turned_to_forward_right_down),
         cmocka_unit_test(texts_become_labels),
         cmocka_unit_test(blank_cells_wait),
+        cmocka_unit_test(counts_are_suggested_as_such),
         cmocka_unit_test(increments_are_divided_by_the_interval),
         cmocka_unit_test(microsecond_clocks_keep_their_resolution),
         cmocka_unit_test(findings_count_what_is_wrong),
