@@ -386,6 +386,13 @@ static const struct message {
      "rest)"},
     {"mag_mounting", "the magnetometer is turned by {0.3g} deg against the nearest order of axes "
                      "({name}); the model describes it as it is. Check its axes"},
+    {"mag_scale_unit",
+     "the magnetometer reads a field of {0.4g} uT where --field says {1.4g} uT, so it is not "
+     "calibrated: {2?}--field looks like{?}{2!}the columns look like{?} {name}; correct the unit"},
+    {"mag_scale_useless",
+     "the magnetometer reads a field of {0.4g} uT where --field says {1.4g} uT, so it is not "
+     "calibrated: no sensor errs by so much. The unit of the columns or of --field is wrong, its "
+     "range is another one, or a magnet or steel is near"},
     {"mag_scale",
      "the magnetometer reads a field of {0.4g} uT where --field says {1.4g} uT: the unit "
      "of the columns or of --field is wrong, or steel is near"},
