@@ -196,6 +196,7 @@ static int tell(const allan_options *o, const char *path, const imk_allan_log *a
     const imk_findings none = {.count = 0}, *findings = a ? &a->findings : &none;
     const imk_finding *failure = status == IMK_ERROR_RANGE ? imk_findings_failure(findings) : NULL;
     char text[300];
+    log_input_note(path, findings);
     if (!failure)
         return log_input_tell(path, findings, status, error);
     imk_finding_text(failure, text, sizeof text);

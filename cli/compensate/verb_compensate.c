@@ -85,14 +85,14 @@ static int check_axes(const compensate_options *o, const imk_model *model,
 static int tell(const char *const *operands, const imk_compensate_log *log, imk_status status,
                 const imk_error *error)
 {
-    const imk_findings none = {.count = 0};
-    const imk_finding *failure = log ? imk_findings_failure(&log->findings) : NULL;
+    const imk_findings none = {.count = 0}, *findings = log ? &log->findings : &none;
+    const imk_finding *failure = imk_findings_failure(findings);
+    log_input_note(operands[0], findings);
     if (failure && strcmp(failure->code, "model_refused") == 0)
         return command_error(error, operands[1]);
     if (failure && strcmp(failure->code, "not_written") == 0)
         return command_error(error, NULL);
-    return log_input_tell_model(operands[0], operands[1], log ? &log->findings : &none, status,
-                                error);
+    return log_input_tell_model(operands[0], operands[1], findings, status, error);
 }
 
 static int compensate(const compensate_options *o, const char *const *operands,

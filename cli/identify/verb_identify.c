@@ -2,6 +2,8 @@
 /* imukit identify: log at rest -> stochastic model with confidence intervals and a verdict. */
 #include "identify_parts.h"
 
+#include "imukit/grade_position.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -100,12 +102,14 @@ int identify_end(const identification *i, imk_result *result, bool warns)
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (o->report)
         imk_result_line(result, "Report: %s", o->report);
-    if (o->output)
-        imk_result_line(result,
-                        "Model: %s\nNext: imukit grade %s, or imukit convert %s imu.yaml --to "
-                        "kalibr for a filter",
-                        o->output, o->output, o->output);
-    else if (model && i->shown.log->origin != IMK_IDENTIFY_RECORDS)
+    if (o->output) {
+        const char *grade = imk_grade_possible(&i->model)
+                                ? imk_result_key(result, "imukit grade %s, or ", o->output)
+                                : "";
+        imk_result_line(
+            result, "Model: %s\nNext: %simukit convert %s filter.yaml --to filter --rate %.7gHz",
+            o->output, grade, o->output, 1 / i->shown.log->record.dt);
+    } else if (model && i->shown.log->origin != IMK_IDENTIFY_RECORDS)
         imk_result_line(result, "Next: add -o model.yaml to keep the model, --report report.html "
                                 "for a page");
     const show_options options = {.report = o->report, .plot = o->plot, .json = o->json};
@@ -116,6 +120,7 @@ int identify_end(const identification *i, imk_result *result, bool warns)
 static void end_page(const identification *i, imk_result *result)
 {
     const char *model = i->options->output ? i->options->output : "model.yaml";
+    const bool grades = imk_grade_possible(&i->model);
     imk_result_for(result, IMK_FOR_PAGE);
     if (i->model.gyro.present || i->model.accel.present)
         show_model(result, "Model file", &i->model);
@@ -123,12 +128,14 @@ static void end_page(const identification *i, imk_result *result)
     imk_result_heading(result, "Next");
     imk_result_code(result,
                     imk_result_key(result,
-                                   "imukit grade %s\n"
+                                   "%s%s%s"
                                    "imukit simulate %s --rate %gHz --duration 1h --seed 2 -o "
                                    "another.csv\n"
                                    "imukit identify %s --into MODEL -o MODEL   # only the noise of "
                                    "an existing model",
-                                   model, model, 1 / i->shown.log->record.dt, i->shown.name));
+                                   grades ? "imukit grade " : "", grades ? model : "",
+                                   grades ? "\n" : "", model, 1 / i->shown.log->record.dt,
+                                   i->shown.name));
 }
 
 static int identify_log(identification *i, const imk_executor *executor)

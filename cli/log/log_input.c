@@ -72,6 +72,16 @@ static char *message_of(const imk_finding *finding, const char *path, const char
     return text;
 }
 
+void log_input_note(const char *path, const imk_findings *findings)
+{
+    for (size_t i = 0; i < findings->count; i++)
+        if (findings->item[i].level == IMK_FINDING_NOTE) {
+            char *text = message_of(&findings->item[i], path, "the model");
+            command_note("%s", text);
+            free(text);
+        }
+}
+
 int log_input_tell_model(const char *path, const char *model, const imk_findings *findings,
                          imk_status status, const imk_error *error)
 {
@@ -119,6 +129,7 @@ int log_input_load(const log_input *input, const char *path, imk_even_record *ch
     job_progress_end(&shown);
     imk_log_close(reader);
     code = log_input_tell(path, &findings, status, &error);
+    log_input_note(path, &findings);
     if (code >= 0)
         imk_even_record_free(channels);
     return code;

@@ -38,7 +38,9 @@ int log_input_open(const log_input *input, const char *path, bool again, imk_log
  * @return -1, or the exit code of a status that is no success */
 int log_input_tell(const char *path, const imk_findings *findings, imk_status status,
                    const imk_error *error);
-/* The same of a job that has a model beside the record. */
+/* Notes of a job whose result does not show them. */
+void log_input_note(const char *path, const imk_findings *findings);
+/* The same as log_input_tell() of a job that has a model beside the record. */
 int log_input_tell_model(const char *path, const char *model, const imk_findings *findings,
                          imk_status status, const imk_error *error);
 

@@ -120,6 +120,8 @@ typedef struct imk_calibrate_record {
     double *mean_sigma; /**< of a table of means: a column for each axis, gyros first */
     bool no_sigma[2];   /**< the table does not say how well the means of gyros, accelerometers
                              are known */
+    double samples[2];  /**< mean number of samples in a mean, where the deviations in the table of
+                             means are those of samples; else 0 */
     double *reference;  /**< IMK_CALIBRATE_REFERENCES columns: rate, force, angular acceleration */
     double motion_offset; /**< time of the record at which the programme begins [s] */
     imk_findings loaded;  /**< findings of imk_calibrate_record_load() */

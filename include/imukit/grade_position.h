@@ -70,6 +70,9 @@ typedef struct imk_graded {
     const char *omitted[IMK_GRADE_OMITTED]; /**< effects that the linear figures leave out */
 } imk_graded;
 
+/** Does a model state anything to grade? */
+IMK_API bool imk_grade_possible(const imk_model *model);
+
 /** Grade a model, which must outlive the result.
  *  @param job     NULL: one thread, no progress, the memory of the C library
  *  @param result  free it with imk_graded_free(), also after a failure, because it then holds the

@@ -75,7 +75,8 @@ typedef struct imk_log_reader imk_log_reader;
  *  Names, in any case: time (t, timestamp); gyro_, dtheta_, accel_ (acc_), dvel_ followed by x, y,
  *  z or 0 … 7; temperature (temp). Units follow the name in brackets or parentheses. Counts are
  *  allowed for any sensor. Other columns are kept as IMK_QUANTITY_OTHER: in SI if their unit is
- *  known, else unchanged. If the first row holds a text, the column is a label column.
+ *  known, else unchanged. If the first cell that is not blank, within 16 MiB, holds a text, the
+ *  column is a label column; a blank cell is then the empty text.
  *
  *  The message of every error ends with the exact option to add.
  *  @return IMK_ERROR_OPEN, _READ, _WRITE (of the temporary copy), _EMPTY, _FORMAT, _COMPRESSED,

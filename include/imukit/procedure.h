@@ -92,6 +92,16 @@ IMK_API imk_procedure_settings imk_procedure_default(imk_procedure procedure);
 
 enum { IMK_UNDETERMINED_MAX = 32 };
 
+/** A turn whose angle does not agree with the others about its axis. */
+typedef struct imk_odd_turn {
+    size_t begin;       /**< first sample */
+    int axis;           /**< body axis, 0 to 2 */
+    int number;         /**< which of the turns about this axis, from 1 */
+    double angle, read; /**< stated, and by the gyro with the scale factor of the others [rad] */
+} imk_odd_turn;
+
+enum { IMK_ODD_TURNS_MAX = 8 };
+
 /** Findings of the procedure "turns". */
 typedef struct imk_turns_findings {
     double freedom;      /**< repetitions: turns less the axes turned about */
@@ -105,6 +115,12 @@ typedef struct imk_turns_findings {
     size_t other_begin;  /**< sample at which the first of these begins */
     int other_axis;      /**< its axis; -1: about no one axis */
     double other_angle;  /**< angle that the gyro reads in it [rad] */
+    size_t odd;          /**< turns left out because their angle does not agree with the others; the
+                            chance that a sound log has one is 1 in 1000 or less */
+    imk_odd_turn odd_turn[IMK_ODD_TURNS_MAX]; /**< the first of them */
+    double torn[3]; /**< of the turns about each axis: largest difference of what the gyro reads by
+                       angles that were stated equal, where they do not agree and are too few to
+                       tell which is wrong [rad]; else 0 */
 } imk_turns_findings;
 
 /** Findings of a procedure about the log. */

@@ -20,7 +20,9 @@ void imki_finding_put(imki_finding_writing *w, const char *text, size_t length)
 static const char *sensor_word(double sensor, char how)
 {
     return how == 'k'   ? (sensor == 0 ? "gyro" : "accel")
-           : how == 'p' ? (sensor == 0 ? "gyros" : "accelerometers")
+           : how == 'p' ? (sensor == 0   ? "gyros"
+                           : sensor == 1 ? "accelerometers"
+                                         : "magnetometer")
            : how == 'q' ? (sensor == 0 ? "rate" : "specific force")
                         : NULL;
 }

@@ -3,10 +3,10 @@
  *
  * Braces hold the index of a number of the finding and how to write it: {0} a count, {1g} as %g,
  * {2.1f} as %.1f, {0s} an s unless the count is one, {0a} the name of an Allan statistic, {0t} the
- * text of a status, {0k} gyro or accel, {0p} gyros or accelerometers, {0q} rate or specific force,
- * {0u} a quantity of the unit that is the name. {name} is the name, {other} what stands behind a
- * tab in it; {record} and {model} are what these are called. The text between {2?} and {?} is shown
- * if number 2 is not 0, the text behind {2!} if it is 0. */
+ * text of a status, {0k} gyro or accel, {0p} gyros, accelerometers or magnetometer, {0q} rate or
+ * specific force, {0u} a quantity of the unit that is the name. {name} is the name, {other} what
+ * stands behind a tab in it; {record} and {model} are what these are called. The text between {2?}
+ * and {?} is shown if number 2 is not 0, the text behind {2!} if it is 0. */
 #include "finding_fill_internal.h"
 
 #include <string.h>
@@ -25,6 +25,10 @@
     "{0} bad row{0s}, {1} missing sample{1s}: using the longest clean stretch, rows {2} to {3} "   \
     "of "                                                                                          \
     "{4}"
+#define NAME_IT                                                                                    \
+    "{0?}write the unit into the header, such as mag_x [uT]{0!}if that is what it is, name it so " \
+    "with --columns, with a name for each column and - for one to skip{?}{1?} (a sign in a name "  \
+    "does not turn the readings round){?}"
 #define UNORDERED "{0} row{0s} whose time does not increase: left out"
 #define DOUBLED                                                                                    \
     "{0} of {1} rows are the row before them once more, with its time and values: left out"
@@ -32,10 +36,13 @@
 static const struct message {
     const char *code, *text;
 } messages[] = {
-    /* records: even_record.c */
+    /* records: even_record.c, unused_columns.c */
     {"no_rows", "there is a header but no data row"},
     {"no_channel", "there is no column to analyse; name one with --columns, such as gyro_x or "
                    "accel_z"},
+    {"unused_columns", "not used in {record}, although like {other}: {name}; " NAME_IT},
+    {"unused_axis",
+     "{record}: an axis is missing, and {name}, which looks like {other}, is not used; " NAME_IT},
     {"one_row", "there is only one row; record minutes to hours at rest"},
     {"no_interval", "the time column does not increase, so the sampling rate is unknown; leave the "
                     "column out with --columns and state the rate, such as --rate 100Hz"},
@@ -379,6 +386,13 @@ static const struct message {
      "rest)"},
     {"mag_mounting", "the magnetometer is turned by {0.3g} deg against the nearest order of axes "
                      "({name}); the model describes it as it is. Check its axes"},
+    {"mag_scale_unit",
+     "the magnetometer reads a field of {0.4g} uT where --field says {1.4g} uT, so it is not "
+     "calibrated: {2?}--field looks like{?}{2!}the columns look like{?} {name}; correct the unit"},
+    {"mag_scale_useless",
+     "the magnetometer reads a field of {0.4g} uT where --field says {1.4g} uT, so it is not "
+     "calibrated: no sensor errs by so much. The unit of the columns or of --field is wrong, its "
+     "range is another one, or a magnet or steel is near"},
     {"mag_scale",
      "the magnetometer reads a field of {0.4g} uT where --field says {1.4g} uT: the unit "
      "of the columns or of --field is wrong, or steel is near"},
@@ -492,7 +506,7 @@ static const struct message {
                           "log's columns with --columns, and write - for a column to skip"},
     {"compensate:no_sensor", "{record} has no gyro and no accel column: name them with --columns"},
     {"sensor_needed", "{record} has no {0k} columns, which {name} of {model} needs"},
-    {"not_in_model", "{model} describes no {0p}: their columns are copied as they are"},
+    {"not_in_model", "{model} describes no {0p}: the columns are copied as they are"},
     {"no_sensor_in_model", "{model} describes none of the sensors in {record}"},
     {"no_room_for_flags", "there is no room for a column of flags beside {0} others"},
     /* compensate_log.c */

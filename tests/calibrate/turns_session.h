@@ -16,6 +16,7 @@ typedef struct turns_plan {
     double instability; /* of the gyros, over that of session_truth(); 0: 1 */
     double white;       /* the same of the white noise */
     bool one_gyro;      /* gyro_z alone, turned about z */
+    double off[3][4];   /* of the first turns about each axis, from their angle [rad] */
 } turns_plan;
 
 static const char *const turns_labels[] = {"rest", "",       "",       "",      "",
@@ -33,7 +34,8 @@ static inline const double *turns_about(session *b, const turns_plan *plan, int 
     z += 5;
     session_add(b, HOLD, 0, a, sense, 0.0, tilt, heading, none);
     for (int k = 0; k < turns; k++) {
-        const double angle = (k % 2 ? -1.0 : 1.0) * plan->angle + plan->placement * *z++;
+        const double off = k < 4 ? plan->off[a][k] : 0.0;
+        const double angle = (k % 2 ? -1.0 : 1.0) * (plan->angle + off) + plan->placement * *z++;
         session_add(b, BENCH_MOVE, -1, a, sense, 0.0, tilt, heading, none);
         session_add(b, TURN, 6 + a, a, sense, angle, tilt, heading, none);
         heading -= angle;

@@ -132,6 +132,28 @@ static void mistakes_are_answered(void **state)
     sweep();
 }
 
+/* One turn of four by another angle is named and left out; of two it is not known which. */
+static void wrong_turns_are_named(void **state)
+{
+    (void)state;
+    write_turns("-350 deg", false);
+    check_says("$I calibrate turns.csv -p turns --strict", 1,
+               "the turns about z disagree by 10.1 deg");
+    assert_null(strstr(err, "state --placement"));
+    const char *more =
+        "sed 's/pose 0 90 0/rotate z 360 deg at 90 deg\\/s\\n  - hold 5 s\\n  - "
+        "rotate z -360 deg at 90 deg\\/s\\n  - hold 5 s\\n  - pose 0 90 0/' turns.yaml "
+        ">more.yaml && $I simulate unit.yaml --motion more.yaml --rate 100Hz "
+        "--duration 110s --seed 3 -o turns.csv";
+    assert_int_equal(run(more), 0);
+    check_says("$I calibrate turns.csv -p turns --strict", 1,
+               "turn 2 about z, at 14.04 s: -350 deg recorded for -360 deg stated");
+    check_contains(err, "label it \"z -350deg\"", "what to do");
+    check_contains(out, "turns by stated angles  8         1", "table");
+    assert_null(strstr(err, "scatter by"));
+    sweep();
+}
+
 /* What a label states stands against the reading. */
 static void label_against_reading(void **state)
 {
@@ -165,11 +187,9 @@ static void programme_of_turns(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(session_without_accelerometers),
-        cmocka_unit_test(turns_are_shown),
-        cmocka_unit_test(mistakes_are_answered),
-        cmocka_unit_test(label_against_reading),
-        cmocka_unit_test(programme_of_turns),
+        cmocka_unit_test(session_without_accelerometers), cmocka_unit_test(turns_are_shown),
+        cmocka_unit_test(mistakes_are_answered),          cmocka_unit_test(label_against_reading),
+        cmocka_unit_test(wrong_turns_are_named),          cmocka_unit_test(programme_of_turns),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

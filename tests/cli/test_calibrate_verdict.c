@@ -81,8 +81,14 @@ static void wrong_rates_are_told(void **state)
     assert_int_equal(run(sound), 0);
     check_contains(out, "Good: accelerometer", sound);
     check_contains(out, "Cannot be seen in this log: a sampling rate that is some per cent", sound);
-    check_says("$I calibrate bare.csv --rate 200Hz -o m.yaml " POSES, 0, err,
+    check_says("$I calibrate bare.csv --rate 200Hz -o none.yaml " POSES, 1, out,
                "instead of 200 Hz (the angle of a turn is rate times time: check --rate)");
+    check_contains(out, "Not usable: bare.csv: all gyros read 0.5 times the true rate", "rate");
+    check_contains(err, "none.yaml is not written (--anyway would)", "rate");
+    assert_int_equal(run("test -e none.yaml"), 1);
+    check_says("$I calibrate bare.csv --rate 200Hz -o m.yaml --anyway " POSES, 0, out,
+               "Not usable: bare.csv: all gyros read 0.5 times");
+    assert_int_equal(run("test -e m.yaml"), 0);
     check_says("$I calibrate bare.csv --rate 80Hz " POSES, 0, err, "instead of 80 Hz");
     /* No solution is found from there: the reason is told all the same, and no model written. */
     check_says("$I calibrate bare.csv --rate 25Hz -o none.yaml " POSES, 1, err, "instead of 25 Hz");
@@ -94,7 +100,7 @@ static void wrong_ranges_are_told(void **state)
 {
     (void)state;
     write_poses();
-    check_says(CHANGED("for (i = 2; i < 5; i++) $i *= 0.5"), 0, err,
+    check_says(CHANGED("for (i = 2; i < 5; i++) $i *= 0.5"), 1, out,
                "a range of the device that is 2 times that of the conversion");
     check_says(CHANGED("for (i = 2; i < 5; i++) $i *= 4"), 1, err,
                "a range of the device that is 1/4 times");

@@ -194,6 +194,30 @@ static void ranges_are_written_and_checked(void **state)
     sweep();
 }
 
+/* Rows without a text belong to no face, also the first ones. */
+static void blank_labels_are_no_pose(void **state)
+{
+    (void)state;
+    put_unit();
+    put("six.yaml",
+        "imukit_motion: 1\nsteps:\n  - hold 6 s\n  - pose 0 90 0 deg in 3 s\n  - hold 6 s\n"
+        "  - pose 0 -90 0 deg in 4 s\n  - hold 6 s\n  - pose 90 0 0 deg in 3 s\n  - hold 6 s\n"
+        "  - pose -90 0 0 deg in 4 s\n  - hold 6 s\n  - pose 180 0 0 deg in 4 s\n  - hold 6 s\n"
+        "then: hold\n");
+    assert_int_equal(run("$I simulate unit.yaml --motion six.yaml --rate 100Hz --duration 54s "
+                         "-o six.csv"),
+                     0);
+    const char *line =
+        "awk -F, -v OFS=, 'function f(t){return t<0.5?\"\":t<6?\"z_down\":t<9?\"\":t<15?\"x_up\":"
+        "t<19?\"\":t<25?\"x_down\":t<28?\"\":t<34?\"y_down\":t<38?\"\":t<44?\"y_up\":t<48?\"\":"
+        "\"z_up\"} NR==1{print $0,\"pose\";next}{print $0,f($1)}' six.csv >named.csv && "
+        "$I calibrate named.csv -p sixposition " PLACE " --strict";
+    assert_int_equal(run(line), 0);
+    check_contains(out, "accelerometer readings  18        0", line);
+    check_contains(out, "Good: ", line);
+    sweep();
+}
+
 /* What changes in a model is a screen, not its correlations. */
 static void changes_are_few_lines(void **state)
 {
@@ -221,6 +245,7 @@ int main(void)
         cmocka_unit_test(other_programmes_are_noticed),
         cmocka_unit_test(missing_readings_are_told),
         cmocka_unit_test(counts_are_for_logs_in_counts),
+        cmocka_unit_test(blank_labels_are_no_pose),
         cmocka_unit_test(changes_are_few_lines),
         cmocka_unit_test(ranges_are_written_and_checked),
     };

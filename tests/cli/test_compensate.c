@@ -88,7 +88,7 @@ static void test_refusals(void **state)
                   "imukit compensate: error: accel.csv has no gyro columns, which accel.lever_arm "
                   "of arms.yaml needs\n");
     check_message("$I compensate accel.csv rates.yaml", 1,
-                  "imukit compensate: warning: rates.yaml describes no accelerometers: their "
+                  "imukit compensate: warning: rates.yaml describes no accelerometers: the "
                   "columns are copied as they are\nimukit compensate: error: rates.yaml describes "
                   "none of the sensors in accel.csv\n");
     check_message("$I compensate log.csv unit.yaml --axes right-forward-up", 2,

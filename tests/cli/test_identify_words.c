@@ -148,12 +148,30 @@ static void test_standing_still(void **state)
     sweep();
 }
 
+/* What is suggested next succeeds: white noise alone says nothing of a grade. */
+static void next_lines_succeed(void **state)
+{
+    (void)state;
+    put("white.yaml", "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h)}}\n");
+    assert_int_equal(run("$I simulate white.yaml --rate 100Hz --duration 60s --seed 2 -o w.csv && "
+                         "$I identify w.csv -o w.yaml"),
+                     0);
+    assert_null(strstr(out, "imukit grade"));
+    check_contains(out, "Next: imukit convert w.yaml filter.yaml --to filter --rate 100Hz", out);
+    assert_int_equal(run("$I convert w.yaml filter.yaml --to filter --rate 100Hz"), 0);
+    assert_int_equal(run("$I grade w.yaml"), 1);
+    sweep();
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sound),         cmocka_unit_test(test_step),
-        cmocka_unit_test(test_json),          cmocka_unit_test(test_vibration),
-        cmocka_unit_test(test_length),        cmocka_unit_test(test_filter_of_the_driver),
-        cmocka_unit_test(test_standing_still)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(next_lines_succeed),
+                                       cmocka_unit_test(test_sound),
+                                       cmocka_unit_test(test_step),
+                                       cmocka_unit_test(test_json),
+                                       cmocka_unit_test(test_vibration),
+                                       cmocka_unit_test(test_length),
+                                       cmocka_unit_test(test_filter_of_the_driver),
+                                       cmocka_unit_test(test_standing_still)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -125,6 +125,49 @@ static void table_with_deviations(void **state)
     sweep();
 }
 
+/* Without turns nothing tells an inverted axis from mirrored attitudes; labels, and turns, do. */
+static void inverted_axes_are_seen_or_listed(void **state)
+{
+    (void)state;
+    static const char unseen[] = "an accelerometer with the opposite sign, or several";
+    write_table("table.csv", POSES, false, NULL);
+    const char *line = "awk -F, -v OFS=, 'NR > 1 {$2 = -$2} {print}' table.csv >inverted.csv; "
+                       "$I calibrate inverted.csv" TABLE;
+    assert_int_equal(run(line), 0);
+    check_contains(out, unseen, line);
+    write_table("faces.csv", 18, true, NULL);
+    line = "awk -F, -v OFS=, 'NR > 1 {$3 = -$3} {print}' faces.csv >inverted.csv; "
+           "$I calibrate inverted.csv" FACES;
+    assert_int_equal(run(line), 1);
+    check_contains(err, "label each hold by the axis that reads gravity", line);
+    line = "$I calibrate faces.csv" FACES;
+    assert_int_equal(run(line), 0);
+    assert_null(strstr(out, "opposite sign"));
+    line = "cut -d, -f2- faces.csv >unnamed.csv; $I calibrate unnamed.csv" FACES;
+    assert_int_equal(run(line), 0);
+    check_contains(out, unseen, line);
+    sweep();
+}
+
+/* 0.001 m/s^2 of the means, stated as if it were that of 400 samples: chi-square is 400 for each
+ * degree of freedom. Means that are four times too noisy for another reason are not told so. */
+static void deviations_divided_twice(void **state)
+{
+    (void)state;
+    const char *line = "$I calibrate table.csv" TABLE " --strict";
+    write_table("table.csv", POSES, false, ",0.001,0.001,0.001,400");
+    assert_int_equal(run(line), 1);
+    check_contains(err, "name the columns accel_x_std_of_mean", line);
+    write_table("table.csv", POSES, false, ",0.005,0.005,0.005,400");
+    assert_int_equal(run(line), 0);
+    check_contains(out, "the residuals are", line);
+    assert_null(strstr(out, "std_of_mean"));
+    write_table("table.csv", POSES, false, ",0.02,0.02,0.02,400");
+    assert_int_equal(run(line), 0);
+    assert_null(strstr(out, "std_of_mean"));
+    sweep();
+}
+
 static void outliers_are_rows(void **state)
 {
     (void)state;
@@ -216,8 +259,12 @@ static void what_does_not_go_with_it(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_are_named),           cmocka_unit_test(table_with_deviations),
-        cmocka_unit_test(outliers_are_rows),        cmocka_unit_test(option_is_suggested),
+        cmocka_unit_test(rows_are_named),
+        cmocka_unit_test(table_with_deviations),
+        cmocka_unit_test(inverted_axes_are_seen_or_listed),
+        cmocka_unit_test(deviations_divided_twice),
+        cmocka_unit_test(outliers_are_rows),
+        cmocka_unit_test(option_is_suggested),
         cmocka_unit_test(what_does_not_go_with_it),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -214,10 +214,10 @@ static void test_identify_recovers_the_model(void **state)
     check_contains(out, "\n18 of 18 intervals cover the truth; 99.99 % are expected to.\n", out);
     check_contains(out,
                    "Report: r.html\nModel: m.yaml\nNext: imukit grade m.yaml, or imukit convert "
-                   "m.yaml imu.yaml "
-                   "--to kalibr for a filter\n",
+                   "m.yaml filter.yaml --to filter --rate 20Hz\n",
                    out);
     assert_int_equal(run("$I grade m.yaml"), 0);
+    assert_int_equal(run("$I convert m.yaml filter.yaml --to filter --rate 20Hz"), 0);
     assert_int_equal(run("$I simulate m.yaml --rate 20Hz --duration 1min -o twin.csv"), 0);
     read_text("r.html", out);
     check_contains(out, "<h2>Verdict</h2>", "page");

@@ -172,10 +172,10 @@ static void test_alone(void **state)
     CHECK_OK(imk_model_validate(&found->model, &error));
     imk_calibrate_log_free(found);
     /* A field that is given is the scale. */
-    settings.field = 2 * sqrt(43.0 * 43 + 400) * 1e-6;
+    settings.field = 1.3 * sqrt(43.0 * 43 + 400) * 1e-6;
     settings.frame = IMK_FRAME_UPPER;
     CHECK_OK(run(IMK_PROCEDURE_MAGNETOMETER, &settings, 3, "T"));
-    CHECK_CLOSE(found->model.mag.scale_factor.fixed.value[2], -0.5, 0.02);
+    CHECK_CLOSE(found->model.mag.scale_factor.fixed.value[2], 1 / 1.3 - 1, 0.02);
     CHECK_CLOSE(found->model.mag.cross_axis.value[2][0], 0, 0);
     assert_int_equal(found->result->parameter_count, 9);
     check_told("mag_scale", IMK_FINDING_WARNING, true);
@@ -274,6 +274,37 @@ static void test_units(void **state)
     imk_calibrate_log_free(found);
 }
 
+/* A scale that no sensor has is none: which unit was taken for which, by the ratio. */
+static void test_useless_scales(void **state)
+{
+    (void)state;
+    static const struct {
+        double field; /* [uT] */
+        const char *unit, *words;
+        bool given;
+    } faults[] = {{0.474, "T", "gauss taken for uT", true},
+                  {474, "T", "mG taken for uT", true},
+                  {47.4, "mT", "T taken for mT, or mT taken for uT, or uT taken for nT", false},
+                  {47.4, "uT", "T taken for uT, or mT taken for nT", false},
+                  {47400, "T", "mT taken for T, or uT taken for mT, or nT taken for uT", true},
+                  {100, "T", "", false}};
+    imk_calibrate_log_settings settings = usual();
+    fill();
+    for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
+        const char *code = faults[k].words[0] ? "mag_scale_unit" : "mag_scale_useless";
+        settings.field = 1e-6 * faults[k].field;
+        CHECK_STATUS(run(IMK_PROCEDURE_MAGNETOMETER, &settings, 3, faults[k].unit),
+                     IMK_ERROR_CONFLICT);
+        const imk_finding *f = imk_findings_failure(&found->findings);
+        assert_string_equal(f->code, code);
+        assert_string_equal(f->name, faults[k].words);
+        assert_true((f->number[2] != 0) == faults[k].given || !faults[k].words[0]);
+        check_told(code, IMK_FINDING_FAILURE, false);
+        CHECK_OK(run(IMK_PROCEDURE_MULTIPOSITION, &settings, 0, faults[k].unit));
+        check_told(code, IMK_FINDING_WARNING, false);
+    }
+}
+
 static void test_records(void **state)
 {
     (void)state;
@@ -347,6 +378,7 @@ int main(void)
                                        cmocka_unit_test(test_alone),
                                        cmocka_unit_test(test_axes),
                                        cmocka_unit_test(test_units),
+                                       cmocka_unit_test(test_useless_scales),
                                        cmocka_unit_test(test_records),
                                        cmocka_unit_test(test_field),
                                        cmocka_unit_test(test_shown)};

@@ -22,7 +22,8 @@
  *
  * At rest a gyro reads its bias, a part of the Earth's rate W (variance W^2/3 in an unknown
  * attitude) and its g-sensitivity times g. These are the same until the unit is put down otherwise,
- * so rests between turns about one axis count once. */
+ * so rests between turns about one axis count once. A turn by another angle than stated is found by
+ * its ratio of reading to angle, where the others about its axis agree (turns_odd.c). */
 #include "turns_internal.h"
 
 #include "base/algebra/vector_internal.h"
@@ -38,6 +39,8 @@ static const double reading_share = 0.1;
  * than one. */
 static const double freedom_of_estimator = 3.5;
 static const double confidence = 0.95;
+/* That a sound log has a turn that does not agree with the others. */
+static const double odd_by_chance = 1e-3;
 
 size_t imki_turns_workspace(const imk_test_record *record, const imk_procedure_settings *settings)
 {
@@ -138,6 +141,76 @@ static double angle_variance(const imki_turn_list *list, const imki_known_turn *
     return rate * time * time + step * step;
 }
 
+/* The gyro along the axis of a turn; -1: there is none. */
+static int gyro_of(const imki_turn_list *list, const imki_known_turn *turn)
+{
+    for (int i = 0; i < gyros(list); i++)
+        if (list->body[i] == turn->body)
+            return i;
+    return -1;
+}
+
+/* What is told of odd turns: `mean` is that of the ratios of the others about each axis. */
+static void tell_odd(const imki_turn_list *list, const double mean[3], imk_turns_findings *f)
+{
+    int number[3] = {0};
+    for (size_t k = 0; k < list->turn_count; k++) {
+        const imki_known_turn *turn = &list->turn[k];
+        const int i = gyro_of(list, turn);
+        number[turn->body]++;
+        if (!turn->odd)
+            continue;
+        if (f->odd < IMK_ODD_TURNS_MAX)
+            f->odd_turn[f->odd] =
+                (imk_odd_turn){.begin = turn->begin,
+                               .axis = turn->body,
+                               .number = number[turn->body],
+                               .angle = turn->angle,
+                               .read = turn->angle * ratio_of(list, turn, i) / mean[turn->body]};
+        f->odd++;
+    }
+}
+
+/* Turns by another angle than stated. */
+static void find_odd(const imki_procedure_call *call, imki_turn_list *list)
+{
+    const double placement = call->settings->placement_sigma;
+    imk_turns_findings *f = &call->findings->known_turns;
+    double mean[3] = {0.0}, count[3] = {0.0}, least[3] = {0.0}, most[3] = {0.0};
+    bool torn[3];
+    size_t n = 0;
+    for (size_t k = 0; k < list->turn_count; k++) {
+        const imki_known_turn *turn = &list->turn[k];
+        const int i = gyro_of(list, turn);
+        if (i < 0)
+            continue;
+        const double variance = placement * placement + angle_variance(list, turn, i);
+        list->repeat[n++] =
+            (imki_repeat){.group = turn->body,
+                          .value = ratio_of(list, turn, i),
+                          .weight = turn->angle * turn->angle / fmax(variance, 1e-18)};
+    }
+    imki_find_odd(n, list->repeat, odd_by_chance, torn);
+    n = 0;
+    for (size_t k = 0; k < list->turn_count; k++) {
+        imki_known_turn *turn = &list->turn[k];
+        const int j = turn->body;
+        const imki_repeat *repeat = &list->repeat[n];
+        if (gyro_of(list, turn) < 0)
+            continue;
+        n++;
+        turn->odd = repeat->odd;
+        if (turn->odd)
+            continue;
+        least[j] = count[j] > 0.0 ? fmin(least[j], repeat->value) : repeat->value;
+        most[j] = count[j] > 0.0 ? fmax(most[j], repeat->value) : repeat->value;
+        mean[j] += (repeat->value - mean[j]) / ++count[j];
+        if (torn[j])
+            f->torn[j] = fabs(turn->angle) * (most[j] - least[j]) / fabs(mean[j]);
+    }
+    tell_odd(list, mean, f);
+}
+
 /* Scatter of the ratios of each axis, into the findings. @return what widens the angles */
 static double look_at_scatter(const imki_procedure_call *call, const imki_turn_list *list)
 {
@@ -149,7 +222,7 @@ static double look_at_scatter(const imki_procedure_call *call, const imki_turn_l
         for (int pass = 0; pass < 2; pass++)
             for (size_t k = 0; k < list->turn_count; k++) {
                 const imki_known_turn *turn = &list->turn[k];
-                if (turn->body != list->body[i])
+                if (turn->body != list->body[i] || turn->odd)
                     continue;
                 const double variance = placement * placement + angle_variance(list, turn, i);
                 const double weight = turn->angle * turn->angle / fmax(variance, 1e-30);
@@ -281,7 +354,7 @@ static void observe_across(const imki_procedure_call *call, const imki_turn_list
         for (size_t k = 0; k < list->turn_count && list->body[i] != body; k++) {
             const imki_known_turn *turn = &list->turn[k];
             const double square = turn->angle * turn->angle;
-            if (turn->body != body)
+            if (turn->body != body || turn->odd)
                 continue;
             o.begin = turns++ == 0 ? turn->begin : o.begin;
             o.end = turn->end;
@@ -428,10 +501,12 @@ imk_status imki_turns_observe(const imki_procedure_call *call)
     for (size_t k = 0; k < list.turn_count; k++)
         if (!list.turn[k].stated)
             call->findings->known_turns.direction_read = true;
+    find_odd(call, &list);
     const double widened = look_at_scatter(call, &list);
     observe_rests(call, &list);
     for (size_t k = 0; k < list.turn_count; k++)
-        observe_turn(call, &list, &list.turn[k], widened, fixture);
+        if (!list.turn[k].odd)
+            observe_turn(call, &list, &list.turn[k], widened, fixture);
     for (int body = 0; body < 3; body++)
         observe_across(call, &list, body, fixture);
     return IMK_OK;

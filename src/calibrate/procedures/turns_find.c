@@ -148,6 +148,7 @@ static char *lay_out(const imk_test_record *record, imki_parts *parts, imki_turn
     list->turn_capacity = DETECTED_MAX + runs;
     list->rest = imki_take(parts, list->rest_capacity * sizeof *list->rest);
     list->turn = imki_take(parts, list->turn_capacity * sizeof *list->turn);
+    list->repeat = imki_take(parts, list->turn_capacity * sizeof *list->repeat);
     return imki_take(parts, 0);
 }
 

@@ -10,6 +10,7 @@ typedef struct imki_known_turn {
     size_t begin, end;
     int body;             /* body axis, 0 to 2 */
     double angle;         /* about it, with sign [rad] */
+    bool odd;             /* does not agree with the others: not observed */
     bool stated;          /* its direction; false: as the gyro reads, or in counts as is settled */
     size_t before, after; /* rests */
     double duration;      /* [s] */
@@ -17,6 +18,14 @@ typedef struct imki_known_turn {
     double read[IMK_AXES_MAX];  /* mean readings, less those of the rests, in the record's unit */
     double drift[IMK_AXES_MAX]; /* of the readings from the rest before to that after */
 } imki_known_turn;
+
+/* A measurement of what is the same for all of its group. */
+typedef struct imki_repeat {
+    int group;            /* 0 to 2 */
+    double value, weight; /* weight: 1/variance */
+    size_t set_aside;     /* of the search */
+    bool odd;             /* does not agree with the rest */
+} imki_repeat;
 
 typedef struct imki_turn_list {
     imk_test_record record;    /* without accelerometers */
@@ -27,6 +36,7 @@ typedef struct imki_turn_list {
     size_t rest_count, rest_capacity, turn_count, turn_capacity;
     imk_static_interval *rest;
     imki_known_turn *turn;
+    imki_repeat *repeat; /* one of each turn */
 } imki_turn_list;
 
 /* Bytes for the list and the detection. */
@@ -36,5 +46,9 @@ size_t imki_turn_list_workspace(const imk_test_record *record,
  * @return IMK_ERROR_TOO_SHORT ("hold", "turn"), IMK_ERROR_KEY_MISSING ("gyro"),
  * IMK_ERROR_UNSUPPORTED (directions), errors of imk_static_detect() */
 imk_status imki_turn_list_make(const imki_procedure_call *call, imki_turn_list *list);
+
+/* turns_odd.c: which do not agree with the rest. @param chance  that any is found among good ones
+ * @param torn  of each group: its repetitions disagree, and do not tell which are odd */
+void imki_find_odd(size_t count, imki_repeat *repeat, double chance, bool torn[3]);
 
 #endif

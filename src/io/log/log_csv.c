@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LOOK = 4096 }; /* bytes looked at to tell a text */
+enum { LOOK = 4096 };           /* bytes looked at to tell a text */
+enum { LOOK_AHEAD = 16 << 20 }; /* for the first cell of a column that is not blank */
 
 typedef struct csv {
     imki_log_cells_reader *read_cells;
@@ -67,10 +68,76 @@ static imk_status next_line(imki_log_text *text, imki_log_piece *line, bool *who
     }
 }
 
-static imk_status refuse_no_header(size_t count, imk_error *error)
+/* Begin anew with the rows. */
+static void go_back(imki_log_text *text, size_t line)
+{
+    text->next = text->hold;
+    if (text->lines_end < text->next)
+        text->lines_end = text->next;
+    text->line = line;
+}
+
+/* Only whole numbers in some cells of the first rows, and one beyond 9: most likely counts. */
+static bool look_like_counts(imki_log_text *text, char separator, size_t count, const bool *asked)
+{
+    enum { ROWS = 8 };
+    const size_t line = text->line;
+    bool whole_numbers = true, any = false;
+    text->hold = text->next;
+    for (int row = 0; row < ROWS && whole_numbers; row++) {
+        imki_log_piece at, cells[IMK_LOG_COLUMNS_MAX];
+        bool whole, found;
+        if (next_line(text, &at, &whole, &found, NULL) != IMK_OK || !found ||
+            imki_log_split(at.begin, at.end, separator, IMK_LOG_COLUMNS_MAX, cells) != count)
+            break;
+        for (size_t i = 0; i < count; i++) {
+            const size_t length = (size_t)(cells[i].end - cells[i].begin);
+            size_t digits = 0;
+            for (size_t k = 0; asked[i] && k < length; k++) {
+                const char c = cells[i].begin[k];
+                const bool digit = c >= '0' && c <= '9';
+                digits += digit;
+                whole_numbers = whole_numbers && (digit || c == '-' || c == '+');
+            }
+            any = any || digits > 1;
+        }
+    }
+    go_back(text, line);
+    text->hold = NULL;
+    return whole_numbers && any;
+}
+
+/* What a unit is missing for, and readings that look like counts. */
+static void suggest_counts(imk_log_reader *reader, const imki_log_piece *cells, size_t count,
+                           imk_error *error)
+{
+    imk_log_settings settings = reader->settings;
+    bool asked[IMK_LOG_COLUMNS_MAX] = {false};
+    int sensors = 0; /* 1: gyros, 2: accelerometers lack their unit */
+    settings.gyro_unit = settings.gyro_unit ? settings.gyro_unit : "count";
+    settings.accel_unit = settings.accel_unit ? settings.accel_unit : "count";
+    for (size_t i = 0; i < count; i++) {
+        imk_log_column as_counts, as_stated;
+        const bool sensor = imki_log_column_make(cells[i], &settings, &as_counts, NULL) == IMK_OK &&
+                            (as_counts.quantity == IMK_QUANTITY_ANGULAR_RATE ||
+                             as_counts.quantity == IMK_QUANTITY_SPECIFIC_FORCE);
+        asked[i] = sensor && imki_log_column_make(cells[i], &reader->settings, &as_stated, NULL) ==
+                                 IMK_ERROR_UNIT_MISSING;
+        if (asked[i])
+            sensors |= as_counts.quantity == IMK_QUANTITY_ANGULAR_RATE ? 1 : 2;
+    }
+    if (sensors > 0 && look_like_counts(&reader->text, reader->layout.separator, count, asked))
+        snprintf(error->expected, sizeof error->expected,
+                 "add %s%s%s (the readings are whole numbers; or a unit such as deg/s, g)",
+                 sensors & 1 ? "--gyro-unit count" : "", sensors == 3 ? " " : "",
+                 sensors & 2 ? "--accel-unit count" : "");
+}
+
+static imk_status refuse_no_header(size_t count, bool counts, imk_error *error)
 {
     static const char sensors[] = "gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z";
-    static const char units[] = "--gyro-unit deg/s --accel-unit g";
+    const char *units =
+        counts ? "--gyro-unit count --accel-unit count" : "--gyro-unit deg/s --accel-unit g";
     char expected[160];
     if (count == 6)
         snprintf(expected, sizeof expected, "add --columns %s %s --rate 100Hz", sensors, units);
@@ -83,6 +150,17 @@ static imk_status refuse_no_header(size_t count, imk_error *error)
                  count, units);
     return imk_error_set(error, IMK_ERROR_COLUMN, "", "no header: the first row is all numbers",
                          expected);
+}
+
+/* The first line is a row: of six readings, or of a time and six. */
+static imk_status refuse_headless(imk_log_reader *reader, imki_log_piece line, char separator,
+                                  size_t count, imk_error *error)
+{
+    bool asked[IMK_LOG_COLUMNS_MAX] = {false};
+    for (size_t i = 0; i < count; i++)
+        asked[i] = count == 6 || i > 0;
+    reader->text.next = line.begin;
+    return refuse_no_header(count, look_like_counts(&reader->text, separator, count, asked), error);
 }
 
 /* Names from the settings, with the unit of the file's header where they have none. */
@@ -146,11 +224,13 @@ static imk_status read_names(imk_log_reader *reader, imk_error *error)
     if (settings->columns)
         status = replace_names(settings->columns, !numbers, count, cells, text_of_names, error);
     else if (numbers)
-        status = refuse_no_header(count, error);
+        status = refuse_headless(reader, line, separator, count, error);
     if (status != IMK_OK)
         return status;
     reader->layout.separator = separator;
     status = imki_log_layout_make(cells, count, settings, &reader->layout, error);
+    if (status == IMK_ERROR_UNIT_MISSING && error && !numbers)
+        suggest_counts(reader, cells, count, error);
     if (status != IMK_OK && error && !settings->columns)
         error->line = header_line;
     if (numbers) { /* it was a row */
@@ -160,25 +240,51 @@ static imk_status read_names(imk_log_reader *reader, imk_error *error)
     return status;
 }
 
-/* Columns without meaning here may hold texts: the first row tells. */
-static imk_status find_labels(imk_log_reader *reader, imki_log_piece line, imk_error *error)
+/* What the cells of a row say of columns that are `open`. */
+static imk_status look_at_cells(imk_log_reader *reader, const imki_log_piece *cells, bool *open,
+                                size_t *left, imk_error *error)
 {
     imki_log_layout_read *layout = &reader->layout;
-    imki_log_piece cells[IMK_LOG_COLUMNS_MAX];
     double value;
-    if (imki_log_split(line.begin, line.end, layout->separator, IMK_LOG_COLUMNS_MAX, cells) !=
-        layout->cell_count)
-        return IMK_OK; /* refused when it is read */
     for (size_t i = 0; i < layout->cell_count; i++) {
-        if (layout->cell_column[i] < 0 || cells[i].begin == cells[i].end ||
-            imki_log_piece_is_number(cells[i], &value))
+        if (!open[i] || cells[i].begin == cells[i].end)
             continue;
-        imk_log_column *column = &layout->column[layout->cell_column[i]];
-        column->label = column->quantity == IMK_QUANTITY_OTHER;
-        if (column->label && !reader->labels)
+        open[i] = false;
+        --*left;
+        if (imki_log_piece_is_number(cells[i], &value))
+            continue;
+        layout->column[layout->cell_column[i]].label = true;
+        if (!reader->labels)
             reader->labels = calloc(IMKI_LABELS_MAX, sizeof reader->labels[0]);
-        if (column->label && !reader->labels)
+        if (!reader->labels)
             return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    }
+    return IMK_OK;
+}
+
+/* Columns without meaning here may hold texts: the first cell that is not blank tells. What is
+ * wrong with a row is left to be found when it is read. */
+static imk_status find_labels(imk_log_reader *reader, imk_error *error)
+{
+    const imki_log_layout_read *layout = &reader->layout;
+    imki_log_text *text = &reader->text;
+    bool open[IMK_LOG_COLUMNS_MAX] = {false};
+    size_t left = 0;
+    for (size_t i = 0; i < layout->cell_count; i++) {
+        const int column = layout->cell_column[i];
+        open[i] = column >= 0 && layout->column[column].quantity == IMK_QUANTITY_OTHER;
+        left += open[i];
+    }
+    while (left > 0 && text->next - text->hold < LOOK_AHEAD) {
+        imki_log_piece line, cells[IMK_LOG_COLUMNS_MAX];
+        bool whole, found;
+        if (next_line(text, &line, &whole, &found, NULL) != IMK_OK || !found ||
+            imki_log_split(line.begin, line.end, layout->separator, IMK_LOG_COLUMNS_MAX, cells) !=
+                layout->cell_count)
+            return IMK_OK;
+        const imk_status status = look_at_cells(reader, cells, open, &left, error);
+        if (status != IMK_OK)
+            return status;
     }
     return IMK_OK;
 }
@@ -195,15 +301,11 @@ static imk_status look_at_rows(imk_log_reader *reader, imk_error *error)
     for (; rows < rows_wanted; rows++) {
         imki_log_piece line;
         bool whole, found, not_finite;
-        imk_status status = next_line(&reader->text, &line, &whole, &found, error);
+        const imk_status status = next_line(&reader->text, &line, &whole, &found, error);
         if (status != IMK_OK)
             return status;
         if (!found)
             break;
-        if (rows == 0)
-            status = find_labels(reader, line, error);
-        if (status != IMK_OK)
-            return status;
         if (imki_log_row_read(layout, line, whole, 0, reader->labels, &reader->label_count, values,
                               &not_finite, NULL) != IMK_OK)
             return IMK_OK;
@@ -229,12 +331,12 @@ static imk_status open_csv(imk_log_reader *reader, imk_error *error)
         return status;
     const size_t line = text->line;
     text->hold = text->next;
-    status = look_at_rows(reader, error);
-    text->next = text->hold;
-    if (text->lines_end < text->next)
-        text->lines_end = text->next;
+    status = find_labels(reader, error);
+    go_back(text, line);
+    if (status == IMK_OK)
+        status = look_at_rows(reader, error);
+    go_back(text, line);
     text->hold = NULL;
-    text->line = line;
     return status;
 }
 

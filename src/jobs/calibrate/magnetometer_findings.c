@@ -223,6 +223,11 @@ static bool check_order(imk_calibrate_log *b, const imk_magnetometer_result *r, 
 
 /* ---- field ----------------------------------------------------------------------------------- */
 
+static bool is_of_earth(double field)
+{
+    return field > field_least * (1 - scale_off) && field < field_most * (1 + scale_off);
+}
+
 /* The unit that the columns look like: "" if none makes a field of the Earth. */
 static const char *likely_unit(const imk_calibrate_log *b, double field)
 {
@@ -232,13 +237,58 @@ static const char *likely_unit(const imk_calibrate_log *b, double field)
     const double stated = column >= 0 ? log->log.column[column].unit.scale : 1;
     for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
         const double here = field / stated * imk_unit_of(units[k]).scale;
-        if (here > field_least * (1 - scale_off) && here < field_most * (1 + scale_off))
+        if (is_of_earth(here))
             return units[k];
     }
     return "";
 }
 
-static void check_field(imk_calibrate_log *b, const imk_magnetometer_result *r)
+/* What makes readings, or a field that is given, this many times too small: a unit that was taken
+ * for another. "": none. */
+static const char *mistaken_unit(double ratio)
+{
+    static const struct {
+        double ratio;
+        const char *words;
+    } units[] = {{10, "uT taken for mG"},
+                 {100, "gauss taken for uT"},
+                 {1e3, "T taken for mT, or mT taken for uT, or uT taken for nT"},
+                 {1e4, "T taken for gauss"},
+                 {1e5, "gauss taken for nT"},
+                 {1e6, "T taken for uT, or mT taken for nT"}};
+    static const char *const turned[] = {"mG taken for uT",
+                                         "uT taken for gauss",
+                                         "mT taken for T, or uT taken for mT, or nT taken for uT",
+                                         "gauss taken for T",
+                                         "nT taken for gauss",
+                                         "uT taken for T, or nT taken for mT"};
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
+        if (fabs(ratio / units[k].ratio - 1) < scale_off)
+            return units[k].words;
+        if (fabs(ratio * units[k].ratio - 1) < scale_off)
+            return turned[k];
+    }
+    return "";
+}
+
+/* A field that is given is another one than the readings have. */
+static bool check_scale(imk_calibrate_log *b, double field, double known, imk_error *error)
+{
+    static const double most = 1.5;
+    const bool given_is_wrong = is_of_earth(field) && !is_of_earth(known);
+    const char *words = mistaken_unit(given_is_wrong ? field / known : known / field);
+    if (field < most * known && known < most * field) {
+        imki_find(&b->findings, IMK_FINDING_WARNING, "mag_scale", NULL,
+                  IMKI_NUMBERS(1e6 * field, 1e6 * known));
+        return true;
+    }
+    (void)imki_magnetometer_useless(b, IMK_ERROR_CONFLICT,
+                                    words[0] ? "mag_scale_unit" : "mag_scale_useless", words,
+                                    IMKI_NUMBERS(1e6 * field, 1e6 * known, given_is_wrong), error);
+    return false;
+}
+
+static bool check_field(imk_calibrate_log *b, const imk_magnetometer_result *r, imk_error *error)
 {
     const double *a = r->value + IMK_MAGNETOMETER_RESPONSE;
     double cross[3];
@@ -248,12 +298,11 @@ static void check_field(imk_calibrate_log *b, const imk_magnetometer_result *r)
     const double field = r->value[IMK_MAGNETOMETER_FIELD] * scale;
     const char *unit = likely_unit(b, field);
     if (r->field_known && fabs(scale - 1) > scale_off)
-        imki_find(&b->findings, IMK_FINDING_WARNING, "mag_scale", NULL,
-                  IMKI_NUMBERS(1e6 * field, 1e6 * r->value[IMK_MAGNETOMETER_FIELD]));
-    else if (!r->field_known &&
-             !(field > field_least * (1 - scale_off) && field < field_most * (1 + scale_off)))
+        return check_scale(b, field, r->value[IMK_MAGNETOMETER_FIELD], error);
+    if (!r->field_known && !is_of_earth(field))
         imki_find(&b->findings, IMK_FINDING_WARNING, unit[0] ? "mag_field_unit" : "mag_field", unit,
                   IMKI_NUMBERS(1e6 * field));
+    return true;
 }
 
 /* The dip that is given is not used in the fit: it is another witness. */
@@ -289,7 +338,8 @@ bool imki_magnetometer_result(imk_calibrate_log *b, imk_error *error)
     const imk_magnetometer_result *r = b->mag;
     if (!check_coverage(b, r, error) || !check_shape(b, r, error) || !check_order(b, r, error))
         return false;
-    check_field(b, r);
+    if (!check_field(b, r, error))
+        return false;
     check_dip(b, r);
     check_residuals(b, r);
     return true;

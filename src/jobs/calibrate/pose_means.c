@@ -152,8 +152,9 @@ static imk_status refuse_value(imk_calibrate_record *log, const char *code, int 
 }
 
 static imk_status take_sigma(imk_calibrate_record *log, const spread_columns *from, int samples,
-                             bool counts, double *sigma, imk_error *error)
+                             int sensor, double *sigma, imk_error *error)
 {
+    const bool counts = log->record.counts[sensor];
     static const double two_pi_squared = 19.739208802178716;
     const bool of_mean = from->of_mean >= 0;
     const int column = of_mean ? from->of_mean : from->of_samples;
@@ -173,6 +174,7 @@ static imk_status take_sigma(imk_calibrate_record *log, const spread_columns *fr
         const double n = word ? (double)NAN : log->log.data[samples][row];
         if (!(n >= 1 && n < HUGE_VAL))
             return refuse_value(log, "means_samples", samples, row, n, error);
+        log->samples[sensor] += (n - log->samples[sensor]) / (double)(row + 1);
         const double before = fmax(0, s * s - 1.0 / 12);
         const double step = counts ? exp(-two_pi_squared * before) / 12 : 0;
         sigma[row] = sqrt(s * s / n + step);
@@ -265,7 +267,7 @@ static imk_status take_sigmas(imk_calibrate_record *log, int sensor, int samples
     for (int axis = 0; status == IMK_OK && axis < record->axis_count[sensor]; axis++) {
         double *column = sigma + (size_t)axis * record->count;
         if (!log->no_sigma[sensor])
-            status = take_sigma(log, &from[axis], samples, record->counts[sensor], column, error);
+            status = take_sigma(log, &from[axis], samples, sensor, column, error);
         record->mean_sigma[sensor][axis] = column;
     }
     return status;

@@ -250,6 +250,8 @@ static imk_status make_record(imk_calibrate_record *log, const char *section,
         status = find_section(log, section, &column, findings, error);
     if (status == IMK_OK)
         status = take_sections(log, column, error);
+    if (status == IMK_OK)
+        imki_tell_unused(columns->column_count, columns->column, IMK_KINDS, findings);
     if (status == IMK_OK && !record->means)
         tell_missing(record, findings);
     return status;

@@ -8,6 +8,7 @@
 #include "base/refuse_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/even_record_internal.h"
 #include "jobs/record/record_check_internal.h"
 
 #include "imukit/random.h"
@@ -305,6 +306,7 @@ static imk_status compensate(stream *s, const imk_job *job, imk_error *error)
         return status;
     log->taken_out = imki_taken_out(&log->model);
     log->left_in = imki_left_in(&log->model, s->whole);
+    imki_tell_unused(s->source->column_count, s->source->columns, IMK_KINDS, &log->findings);
     status = check_model(s, error);
     for (bool first = true; status == IMK_OK && got > 0; first = false)
         status = next_block(s, first, &got, job, error);

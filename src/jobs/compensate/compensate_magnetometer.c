@@ -25,6 +25,8 @@ void imki_magnetic_start(const imk_record_source *source, imk_compensate_log *lo
     for (size_t k = 0; k < source->column_count; k++)
         there = there || source->columns[k].quantity == IMK_QUANTITY_MAGNETIC;
     magnetic->present = false;
+    if (!triad->present && there)
+        imki_find(&log->findings, IMK_FINDING_WARNING, "not_in_model", NULL, IMKI_NUMBERS(IMK_MAG));
     if (triad->present && there) {
         for (int i = 0; i < 9; i++)
             a.m[i / 3][i % 3] =

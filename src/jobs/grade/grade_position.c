@@ -171,6 +171,11 @@ static imk_status find_position(imk_graded *one, const imk_job *job, imk_error *
     return status;
 }
 
+bool imk_grade_possible(const imk_model *model)
+{
+    return !why_no_position(model) || *imk_grade_model(model).limiting;
+}
+
 imk_status imk_grade_run(const imk_model *model, const imk_job *job, imk_graded **result,
                          imk_error *error)
 {

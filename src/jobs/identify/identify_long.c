@@ -316,6 +316,7 @@ static imk_status finish(long_record *s, bool *taken, imk_error *error)
     imki_grid_tell(record, s->first_not_finite, &log->findings);
     if (record->log.findings.doubled == 0)
         imki_repeats_tell(&s->repeats, record->log.column, record->dt, &log->findings);
+    imki_even_record_unused(record, &log->findings);
     for (size_t c = 0; c < record->count; c++)
         if (s->status[c] != IMK_OK)
             return imki_identify_explain(log, c, s->status[c], &s->error[c], error);

@@ -59,6 +59,14 @@ void imk_even_record_choose(imk_even_record *record)
     }
 }
 
+/* Where no column is one of a gyro or an accelerometer, all are channels. */
+void imki_even_record_unused(const imk_even_record *record, imk_findings *findings)
+{
+    const imk_quantity first = imk_even_record_column(record, 0)->quantity;
+    if (first == IMK_QUANTITY_ANGULAR_RATE || first == IMK_QUANTITY_SPECIFIC_FORCE)
+        imki_tell_unused(record->log.column_count, record->log.column, IMK_MAG, findings);
+}
+
 /* Numbers that are no readings become NaN: missing. Times stay. */
 void imk_log_forget_faults(imk_log *log)
 {
@@ -114,7 +122,9 @@ imk_status imk_even_record_load(const imk_record_source *source, imk_gap_policy 
     imk_even_record_choose(record);
     imk_log_forget_faults(&record->log);
     status = space(source->rate, gaps, record, &repeats, findings, error);
-    if (status == IMK_OK)
-        imki_repeats_tell(&repeats, record->log.column, record->dt, findings);
-    return status;
+    if (status != IMK_OK)
+        return status;
+    imki_repeats_tell(&repeats, record->log.column, record->dt, findings);
+    imki_even_record_unused(record, findings);
+    return IMK_OK;
 }

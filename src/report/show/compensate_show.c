@@ -3,6 +3,7 @@
 #include "show_internal.h"
 
 #include <stdio.h>
+#include <string.h>
 
 void imk_show_terms(const char *key, const char *label, const imk_term_keys *keys,
                     imk_result *result)
@@ -36,6 +37,23 @@ static void show_flags(const imk_compensate_counts *counts, imk_result *result)
     imk_result_end(result);
 }
 
+/* Sensors that the model does not describe: all their errors are left in. */
+static void show_copied(const imk_findings *findings, imk_result *result)
+{
+    static const char *const keys[IMK_KINDS] = {"gyro", "accel", "mag"};
+    static const char *const words[IMK_KINDS] = {"gyros", "accelerometers", "magnetometer"};
+    imk_result_array(result, "copied");
+    for (const imk_finding *f = findings->item; f < findings->item + findings->count; f++) {
+        const bool magnetometer = strcmp(f->code, "magnetometer_left") == 0;
+        if (!magnetometer && strcmp(f->code, "not_in_model") != 0)
+            continue;
+        const int sensor = magnetometer ? IMK_MAG : (int)f->number[0];
+        imk_result_text(result, NULL, keys[sensor]);
+        imk_result_line(result, "Left as it came: every column of the %s", words[sensor]);
+    }
+    imk_result_end(result);
+}
+
 void imk_show_compensate_log(const imk_compensate_log *log, const char *name, const char *model,
                              imk_result *result)
 {
@@ -55,6 +73,7 @@ void imk_show_compensate_log(const imk_compensate_log *log, const char *name, co
     imk_result_quantity(result, "force_bound", correction->bound[IMK_ACCEL], "m/s^2");
     imk_show_terms("taken_out", "Taken out", &log->taken_out, result);
     imk_show_terms("left_in", "Left in", &log->left_in, result);
+    show_copied(&log->findings, result);
     imk_result_end(result);
     imk_result_line(result, "%llu samples, %llu flagged", (unsigned long long)log->counts.rows,
                     (unsigned long long)log->counts.any_flag);

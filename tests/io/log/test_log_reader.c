@@ -455,6 +455,75 @@ static void texts_become_labels(void **state)
     imk_log_free(&log);
 }
 
+/* A unit is not guessed, but of whole numbers it is not deg/s that is suggested. */
+static void counts_are_suggested_as_such(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *due;
+    } logs[] = {
+        {"gyro_x,accel_x,note\n12,-3,0.5\n0,4,0.5\n", "add --gyro-unit count --accel-unit count ("},
+        {"gyro_x [deg/s],accel_x\n1.5,400\n2.5,401\n", "add --accel-unit count ("},
+        {"gyro_x,accel_x\n12,-3\n0.5,4\n", "add --gyro-unit deg/s ("},
+        {"gyro_x,accel_x\n0,0\n0,0\n", "add --gyro-unit deg/s ("},
+        {"1,2,3,4,5,600\n", "--gyro-unit count --accel-unit count --rate"},
+        {"1,2,3,4,5,600\n1,2,3,4,5,6.5\n", "--gyro-unit deg/s --accel-unit g --rate"},
+        {"0.5,1,2,3,4,5,600\n", "--time-unit s --gyro-unit count --accel-unit count"}};
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 2.0;
+    for (size_t k = 0; k < sizeof logs / sizeof logs[0]; k++) {
+        imk_log_reader *reader;
+        imk_error error;
+        assert_int_not_equal(
+            imk_log_open_memory(logs[k].text, strlen(logs[k].text), &settings, &reader, &error),
+            IMK_OK);
+        if (!strstr(error.expected, logs[k].due))
+            fail_msg("%s: %s", logs[k].text, error.expected);
+    }
+}
+
+/* A column that begins blank is what its first other cell says, also far beyond the first window of
+ * a text that is not in memory as a whole. */
+static void blank_cells_wait(void **state)
+{
+    (void)state;
+    enum { BLANK = 30000 };
+    const char *const first[] = {"up", "7", ""};
+    char *text = malloc(16 * BLANK);
+    const char *path = temporary_path("blank.csv");
+    for (int k = 0; k < 3; k++)
+        for (int packed = 0; packed < 2; packed++) {
+            size_t used = (size_t)sprintf(text, "accel_x [count],note\n");
+            for (int i = 0; i < BLANK; i++)
+                used += (size_t)sprintf(text + used, i == 0 ? "1,\"\"\n" : "1,\n");
+            used += (size_t)sprintf(text + used, "2,%s\n3,\n", first[k]);
+            imk_log_settings settings = imk_log_default();
+            settings.rate = 2.0;
+            imk_log log;
+            if (packed)
+                write_gzip(path, text, used);
+            else
+                write_file(path, text, used);
+            CHECK_OK(imk_log_load(path, &settings, NULL, &log, NULL));
+            remove(path);
+            assert_int_equal(log.rows, BLANK + 2);
+            assert_int_equal(log.column[1].label, k == 0);
+            CHECK_CLOSE(log.data[0][BLANK], 2.0, 0.0);
+            const double note = log.data[1][BLANK];
+            if (k == 0) {
+                assert_string_equal(log.label[(size_t)note], "up");
+                assert_string_equal(log.label[(size_t)log.data[1][0]], "");
+                assert_string_equal(log.label[(size_t)log.data[1][BLANK + 1]], "");
+                assert_int_equal(log.findings.not_finite, 0);
+            } else {
+                assert_true(k == 1 ? note == 7.0 : isnan(note));
+                assert_true(isnan(log.data[1][0]));
+            }
+            imk_log_free(&log);
+        }
+    free(text);
+}
+
 /* ---------------------------------------------------------------------------- times and findings
  */
 
@@ -909,6 +978,8 @@ int main(void)
         cmocka_unit_test(settings_stand_in_for_the_header),
         cmocka_unit_test(axes_are_turned_to_forward_right_down),
         cmocka_unit_test(texts_become_labels),
+        cmocka_unit_test(blank_cells_wait),
+        cmocka_unit_test(counts_are_suggested_as_such),
         cmocka_unit_test(increments_are_divided_by_the_interval),
         cmocka_unit_test(microsecond_clocks_keep_their_resolution),
         cmocka_unit_test(findings_count_what_is_wrong),

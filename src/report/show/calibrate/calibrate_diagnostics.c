@@ -37,6 +37,32 @@ static imki_calibrate_message correlated(const imk_calibrate_log *b, double corr
         one, other, correlation);
 }
 
+/* Deviations of means that are named as those of samples are divided by the number of samples once
+ * more: chi-square per degree of freedom is then this number, within 3 of its sigmas.
+ * @return 0: nothing speaks for it */
+static double samples_divided_twice(const imk_calibrate_log *b, const imk_diagnostic_finding *d)
+{
+    const double least = 5, freedom = b->result->group[d->other].degrees_of_freedom;
+    for (size_t k = 0; k < b->count && d->other < IMK_GROUP_TURN; k++) {
+        const double samples = b->record[k].samples[d->sensor];
+        if (samples >= least && fabs(log(d->value / samples)) < 3 * sqrt(2 / freedom))
+            return samples;
+    }
+    return 0;
+}
+
+static imki_calibrate_message divided_twice(const imk_diagnostic_finding *d, double samples)
+{
+    const char *key = imki_sensor_keys[d->sensor];
+    return imki_calibrate_say(
+        sqrt(d->value) > residual_alarm ? IMK_FINDING_WARNING : IMK_FINDING_NOTE, "std_of_mean",
+        "the residuals of the %s means are %.3g times what %s_x_std and samples explain "
+        "(chi-square per degree of freedom %.3g, and a mean has %.4g samples): if the deviations "
+        "are those of the means already, name the columns %s_x_std_of_mean; else the table, the "
+        "hand or the sensor does more than the model describes. Every 1 sigma includes this excess",
+        imki_sensor_titles[d->sensor], sqrt(d->value), key, d->value, samples, key);
+}
+
 /* What the log holds is not what the model says. */
 static imki_calibrate_message unexplained(const imk_calibrate_log *b,
                                           const imk_diagnostic_finding *d)
@@ -90,8 +116,12 @@ static imki_calibrate_message unequal_axes(const imk_calibrate_log *b,
 static imki_calibrate_message on_solution(const imk_calibrate_log *b,
                                           const imk_diagnostic_finding *d)
 {
+    double samples;
     switch (d->kind) {
     case IMK_DIAGNOSTIC_RESIDUALS:
+        samples = samples_divided_twice(b, d);
+        if (samples > 0)
+            return divided_twice(d, samples);
         if (sqrt(d->value) > residual_alarm)
             return unexplained(b, d);
         return imki_calibrate_say(

@@ -102,6 +102,10 @@ void imki_turn_fit(const imk_calibrate_log *b, imk_table *table)
         else
             refused++;
     }
+    for (size_t k = 0; k < b->count; k++) {
+        turns += b->record[k].findings.known_turns.odd;
+        refused += b->record[k].findings.known_turns.odd;
+    }
     if (turns == 0)
         return;
     imk_table_row(table, "turns by stated angles\t%zu\t%zu", turns, refused);
@@ -184,6 +188,8 @@ static void add_scatter(const imk_calibrate_log *b, const imk_calibrate_record *
         f.chi_square = fit->chi_square;
         f.scatter = fit->factor * log->settings.placement_sigma;
     }
+    if (f.torn[0] + f.torn[1] + f.torn[2] > 0)
+        return; /* said of the axis that causes it */
     if (!(f.freedom > 0))
         add(v, imki_calibrate_say(
                    IMK_FINDING_NOTE, "placement_untested",
@@ -200,6 +206,38 @@ static void add_scatter(const imk_calibrate_log *b, const imk_calibrate_record *
                 "includes this; check the mark or the edge that the unit is turned to, or state "
                 "--placement %.2gdeg, which counts for the misalignments too",
                 log->path, f.scatter / degree, sqrt(f.chi_square / f.freedom), f.scatter / degree));
+}
+
+/* Turns by another angle than stated, or about an axis that does not tell which these are. */
+static void add_odd(const imk_calibrate_record *log, imk_verdict *v)
+{
+    const imk_turns_findings *f = &log->findings.known_turns;
+    for (size_t k = 0; k < f->odd && k < IMK_ODD_TURNS_MAX; k++) {
+        const imk_odd_turn *t = &f->odd_turn[k];
+        const char axis = imk_axis_letter(t->axis);
+        add(v,
+            imki_calibrate_say(
+                IMK_FINDING_WARNING, "odd_turn",
+                "%s: turn %d about %c, at %.2f s: %.4g deg recorded for %.5g deg stated, against "
+                "what the other turns show: it is left out. If it was turned by this angle, "
+                "label it \"%c %+.4gdeg\"; else look for what happened to the unit or the log "
+                "there",
+                log->path, t->number, axis, imk_test_record_time(&log->record, t->begin),
+                t->read / degree, t->angle / degree, axis, t->read / degree));
+    }
+    if (f->odd > IMK_ODD_TURNS_MAX)
+        add(v, imki_calibrate_say(IMK_FINDING_WARNING, "odd_turn", "%s: %zu more such turns",
+                                  log->path, f->odd - IMK_ODD_TURNS_MAX));
+    for (int j = 0; j < 3; j++)
+        if (f->torn[j] > 0)
+            add(v, imki_calibrate_say(
+                       IMK_FINDING_WARNING, "turns_disagree",
+                       "%s: the turns about %c disagree by %.3g deg with each other, and are too "
+                       "few to "
+                       "tell which is by another angle than stated: none is left out, and the "
+                       "scale factors of all gyros are less certain by as much; turn about %c "
+                       "again, three times or more",
+                       log->path, imk_axis_letter(j), f->torn[j] / degree, imk_axis_letter(j)));
 }
 
 /* As the diagnostics of the log have said it. */
@@ -227,6 +265,7 @@ void imki_turns_verdict(const imk_calibrate_log *b, const imk_calibrate_record *
                                   "%s: in %zu move%s samples are missing, or there is no rest "
                                   "beside it: left out",
                                   log->path, f->missing, f->missing == 1 ? "" : "s"));
+    add_odd(log, v);
     add_scatter(b, log, v);
     if (!imki_has_only_turns(b) || log != b->record)
         return;

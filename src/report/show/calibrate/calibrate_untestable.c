@@ -51,6 +51,18 @@ static void add_of_gyros(const imk_calibrate_log *b, imki_text *list)
                        "that which its gyro reads)");
 }
 
+/* Three gyros that are turned between the attitudes show whether axes are right-handed. */
+static bool has_turns(const imk_calibrate_log *b)
+{
+    for (size_t k = 0; k < b->count; k++) {
+        const imk_calibrate_record *log = &b->record[k];
+        if (log->procedure <= IMK_PROCEDURE_FERRARIS && !log->record.means &&
+            log->record.axis_count[IMK_GYRO] >= 3 && log->record.axis_count[IMK_ACCEL] >= 3)
+            return true;
+    }
+    return false;
+}
+
 static void add_of_gravity(const imk_calibrate_log *b, imki_text *list)
 {
     if (!is_estimated(b, 1) || !has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_FERRARIS, false))
@@ -60,9 +72,14 @@ static void add_of_gravity(const imk_calibrate_log *b, imki_text *list)
     if (has(b, IMK_PROCEDURE_RATE_TABLE, IMK_PROCEDURE_SPIN, false))
         return;
     if (has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_MULTIPOSITION, false) ||
-        has(b, IMK_PROCEDURE_SIXPOSITION, IMK_PROCEDURE_FERRARIS, true))
-        add_item(list, "all accelerometers with the opposite sign; axes that are named x, y, z in "
-                       "another right-handed order");
+        has(b, IMK_PROCEDURE_SIXPOSITION, IMK_PROCEDURE_FERRARIS, true)) {
+        if (has_turns(b))
+            add_item(list, "all accelerometers with the opposite sign; axes that are named x, y, z "
+                           "in another right-handed order");
+        else
+            add_item(list, "an accelerometer with the opposite sign, or several (the attitudes are "
+                           "then other ones); axes that are named x, y, z in another order");
+    }
 }
 
 /* The sign of the dip tells which way round a magnetometer is, where it is known. */

@@ -61,6 +61,7 @@ static const struct words {
     {"stamps:alternate", "long and short steps of the time alternate", NULL},
     {"stamps:held", "rows repeat the samples of a slower sensor", NULL},
     {"stamps:rate_differs", "--rate is not the rate of the time column", NULL},
+    {"unused_axis", "an axis is missing, and a column that looks like it is not used", NULL},
     {"copy", "a column is the copy of another", NULL},
     {"runs_differ", "the logs do not have the same noise", NULL},
     {"outliers", NULL, "Outliers, left out: %s."},

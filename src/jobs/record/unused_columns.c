@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Columns that nothing reads although they resemble those of a sensor: "gryo_y", "-mag_y",
+ * "gyro y", "accel_z_raw". A name is taken apart into words at signs, capitals and figures. It
+ * resembles a sensor's if a word is the sensor's, give or take a slip, another is an axis, and none
+ * says that it is about something else, such as the standard deviation of readings. A unit of
+ * another dimension rules a sensor out. */
+#include "even_record_internal.h"
+
+#include "base/text_internal.h"
+#include "jobs/job_internal.h"
+
+#include "imukit/model.h"
+#include "imukit/names.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { WORDS_MOST = 12, WORD_SIZE = 48 };
+
+typedef struct words {
+    size_t count;
+    char word[WORDS_MOST][WORD_SIZE];
+} words;
+
+static const struct {
+    const char *name;
+    imk_quantity quantity;
+    const char *unit, *integral; /* that readings and increments may have */
+} sensors[IMK_KINDS] = {{"gyro", IMK_QUANTITY_ANGULAR_RATE, "rad/s", "rad"},
+                        {"accel", IMK_QUANTITY_SPECIFIC_FORCE, "m/s^2", "m/s"},
+                        {"mag", IMK_QUANTITY_MAGNETIC, "T", "T"}};
+
+/* Words of sensors, in full. */
+static const struct {
+    const char *word;
+    int sensor;
+} known[] = {{"gyr", IMK_GYRO},     {"omega", IMK_GYRO},  {"dtheta", IMK_GYRO}, {"w", IMK_GYRO},
+             {"g", IMK_GYRO},       {"acc", IMK_ACCEL},   {"dvel", IMK_ACCEL},  {"a", IMK_ACCEL},
+             {"g", IMK_ACCEL},      {"force", IMK_ACCEL}, {"mag", IMK_MAG},     {"magn", IMK_MAG},
+             {"magnetic", IMK_MAG}, {"m", IMK_MAG}};
+
+/* Words that may have a slip. */
+static const char *const spelled[] = {"gyro",          "gyros",        "gyroscope",   "accel",
+                                      "accelerometer", "acceleration", "magnetometer"};
+static const int sensor_spelled[] = {IMK_GYRO,  IMK_GYRO,  IMK_GYRO, IMK_ACCEL,
+                                     IMK_ACCEL, IMK_ACCEL, IMK_MAG};
+
+/* With one of these it is no reading. */
+static const char *const others[] = {
+    "std",      "sigma", "var",       "variance",   "cov",         "covariance",  "bias",
+    "offset",   "scale", "range",     "temp",       "temperature", "status",      "state",
+    "label",    "flag",  "flags",     "valid",      "count",       "counter",     "samples",
+    "time",     "stamp", "timestamp", "reference",  "ref",         "true",        "truth",
+    "table",    "error", "err",       "quaternion", "quat",        "orientation", "angle",
+    "position", "pos",   "noise",     "residual",   "gravity"};
+
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/* "-gyroX [deg/s]" is gyro, x. */
+static void divide(const char *name, words *w)
+{
+    size_t length = 0;
+    char last = '\0';
+    w->count = 0;
+    for (const char *c = name; *c && w->count < WORDS_MOST; c++) {
+        const bool letter = is_letter(*c), figure = *c >= '0' && *c <= '9';
+        const bool turn = *c >= 'A' && *c <= 'Z' && last >= 'a' && last <= 'z';
+        if (length > 0 && (!(letter || figure) || turn || figure == is_letter(last))) {
+            w->word[w->count++][length] = '\0';
+            length = 0;
+        }
+        if ((letter || figure) && w->count < WORDS_MOST && length + 1 < WORD_SIZE)
+            w->word[w->count][length++] = imki_lower(*c);
+        last = letter || figure ? *c : '\0';
+    }
+    if (length > 0 && w->count < WORDS_MOST)
+        w->word[w->count++][length] = '\0';
+}
+
+/* The axis that a word is: 0 … 7; -1: none. */
+static int axis_of(const char *word)
+{
+    if (!word[0] || word[1])
+        return -1;
+    return word[0] >= 'x' && word[0] <= 'z'   ? word[0] - 'x'
+           : word[0] >= '0' && word[0] <= '7' ? word[0] - '0'
+                                              : -1;
+}
+
+static bool fits(const imk_log_column *column, int sensor)
+{
+    const imk_dimension d = column->unit.dimension, none = {0};
+    return imk_dimension_equal(d, none) || imk_dimension_equal(d, imk_unit_of("count").dimension) ||
+           imk_dimension_equal(d, imk_unit_of(sensors[sensor].unit).dimension) ||
+           imk_dimension_equal(d, imk_unit_of(sensors[sensor].integral).dimension);
+}
+
+/* The sensor of a word; -1: it is none.
+ * @param short_too  one letter will do: only an axis stands beside it, as in "wx" */
+static int sensor_of(const imk_log_column *column, const char *word, bool short_too)
+{
+    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++)
+        if (strcmp(word, known[k].word) == 0 && (word[1] || short_too) &&
+            fits(column, known[k].sensor))
+            return known[k].sensor;
+    const size_t k = strlen(word) > 2
+                         ? imk_nearest_name(word, sizeof spelled / sizeof spelled[0], spelled)
+                         : SIZE_MAX;
+    return k < sizeof spelled / sizeof spelled[0] && fits(column, sensor_spelled[k])
+               ? sensor_spelled[k]
+               : -1;
+}
+
+/* A word with its axis in front or behind: "accelx", "zgyro", "wy". */
+static int joined(const imk_log_column *column, const char *word, bool short_too, int *axis)
+{
+    const size_t length = strlen(word);
+    char rest[WORD_SIZE];
+    for (int front = 0; front < 2 && length > 1; front++) {
+        const char letter[2] = {front ? word[0] : word[length - 1], '\0'};
+        snprintf(rest, sizeof rest, "%.*s", (int)length - 1, word + front);
+        const int sensor = axis_of(letter) < 0 ? -1 : sensor_of(column, rest, short_too && !front);
+        if (sensor >= 0) {
+            *axis = axis_of(letter);
+            return sensor;
+        }
+    }
+    return -1;
+}
+
+/* The sensor whose axis a column seems to be; -1: of none. */
+static int resembles(const imk_log_column *column, int *axis)
+{
+    words w;
+    int sensor = -1, letter = -1, figure = -1;
+    divide(column->name, &w);
+    for (size_t k = 0; k < w.count; k++) {
+        for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+            if (strcmp(w.word[k], others[i]) == 0)
+                return -1;
+        const int place = axis_of(w.word[k]);
+        const bool is_figure = w.word[k][0] >= '0' && w.word[k][0] <= '9';
+        int found = -1, its = -1;
+        if (place >= 0)
+            *(is_figure ? &figure : &letter) = place;
+        else if ((found = joined(column, w.word[k], w.count == 1, &its)) < 0)
+            found = sensor_of(column, w.word[k], w.count == 2 && k == 0);
+        sensor = found >= 0 ? found : sensor;
+        letter = its >= 0 ? its : letter;
+    }
+    if (w.count > 1 && strcmp(w.word[0], "angular") == 0) { /* "angular_velocity.x" */
+        const bool rate = strcmp(w.word[1], "velocity") == 0 || strcmp(w.word[1], "rate") == 0;
+        sensor = rate && fits(column, IMK_GYRO) ? IMK_GYRO : -1;
+    }
+    *axis = letter >= 0 ? letter : figure;
+    return *axis >= 0 ? sensor : -1;
+}
+
+static bool has(size_t count, const imk_log_column *columns, int sensor, int axis)
+{
+    for (size_t k = 0; k < count; k++)
+        if (columns[k].quantity == sensors[sensor].quantity &&
+            (axis < 0 || columns[k].axis == axis))
+            return true;
+    return false;
+}
+
+/* One more of a list that may become too long for its text. */
+static void list(char *text, size_t size, const char *item)
+{
+    const bool first = !text[0];
+    if (strlen(text) + strlen(item) + 8 > size) {
+        imki_append_text(text, size, strstr(text, ", …") ? "" : ", …");
+        return;
+    }
+    imki_append_text(text, size, first ? "" : ", ");
+    imki_append_text(text, size, item);
+}
+
+void imki_tell_unused(size_t count, const imk_log_column *columns, int kinds,
+                      imk_findings *findings)
+{
+    for (int sensor = 0; sensor < kinds; sensor++) {
+        char names[60] = "", likes[36] = "", like[48], both[96];
+        bool any = false, lacking = false, named = false, sign = false;
+        for (size_t k = 0; k < count; k++) {
+            int axis = -1;
+            if (columns[k].quantity != IMK_QUANTITY_OTHER || columns[k].label ||
+                resembles(&columns[k], &axis) != sensor)
+                continue;
+            imk_axis_name(sensors[sensor].name, axis, like);
+            any = true;
+            lacking =
+                lacking || (has(count, columns, sensor, -1) && !has(count, columns, sensor, axis));
+            named = named || strcmp(columns[k].name, like) == 0;
+            sign = sign || columns[k].name[0] == '-' || columns[k].name[0] == '+';
+            list(names, sizeof names, columns[k].name);
+            list(likes, sizeof likes, like);
+        }
+        if (!any)
+            continue;
+        snprintf(both, sizeof both, "%s\t%s", names, likes);
+        imki_find(findings, lacking ? IMK_FINDING_WARNING : IMK_FINDING_NOTE,
+                  lacking ? "unused_axis" : "unused_columns", both, IMKI_NUMBERS(named, sign));
+    }
+}
