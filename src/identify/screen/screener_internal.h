@@ -61,7 +61,7 @@ typedef struct imki_cycles {
 /* Zeros among the noise, and values beside them, in chunks of fine steps and of coarse ones. */
 typedef struct imki_zeros {
     double fine, due, variance; /* zeros, how many are due, variance of their difference */
-    double coarse, one, two;    /* zeros, and values one and two steps away, of one side */
+    double coarse, above[2], below[2]; /* zeros, and values one and two steps away */
 } imki_zeros;
 
 typedef struct imki_counting {

@@ -10,9 +10,9 @@
  * off toward zero. How many are due, the values beside zero tell. Where the step q between values
  * is fine, as many as the mean of those up to k = scale/(2 q) steps on either side; where there is
  * no step, and no other value comes more than three times, none; where it is coarse, by the
- * logarithm of the numbers n_1, n_2 one and two steps away, which is a parabola for Gaussian noise:
+ * logarithm of the numbers n_k of k steps, which is a parabola for Gaussian noise about any mean:
  *
- *     ln n_0 = (4 ln n_1 - ln n_2)/3
+ *     ln n_0 = (4 (ln n_1 + ln n_-1) - ln n_2 - ln n_-2)/6
  *
  * Steps beyond 1.4 scales are not tested: where the level moves, a mixture of such noise is no
  * parabola, and white noise is doubted for the steps. */
@@ -26,7 +26,7 @@ enum { STEPS = 3, REPEATS = 3, FINE = 3, COUNTED_MIN = 25 };
 static const double apart = 0.25; /* of the range: so far from zero are the other samples */
 /* Zeros among the noise are too many when they are more than due by these. */
 static const double coarsest = 1.4;
-static const double least_share = 0.015, least_factor = 1.3, deviations = 6;
+static const double least_share = 0.015, least_factor = 1.2, deviations = 6;
 
 static size_t count_zeros(size_t count, const double *x)
 {
@@ -73,13 +73,13 @@ void imki_screen_lost(imk_screener *s)
         mark_lost(s);
 }
 
-/* Samples that are there, not zero and at most `limit` from it. */
-static double count_near(const imk_screener *s, double limit)
+/* Samples within two limits that are not zero. */
+static double count_between(const imk_screener *s, double low, double high)
 {
-    size_t near = 0;
+    size_t count = 0;
     for (size_t i = 0; i < s->count[0]; i++)
-        near += s->clean[i] != 0 && fabs(s->clean[i]) < limit;
-    return (double)near;
+        count += s->clean[i] != 0 && s->clean[i] > low && s->clean[i] < high;
+    return (double)count;
 }
 
 /* How often the most frequent size of the values within three scales of zero comes. */
@@ -105,15 +105,18 @@ void imki_screen_zeros(imk_screener *s)
     if (zeros == 0 || !(s->scale > 0) || step > coarsest * s->scale)
         return;
     if (step > 0 && step * 2 * FINE > s->scale) {
-        const double one = count_near(s, 1.5 * step), two = count_near(s, 2.5 * step);
         z->coarse += zeros;
-        z->one += 0.5 * one;
-        z->two += 0.5 * (two - one);
+        for (int k = 0; k < 2; k++) {
+            const double low = (k + 0.5) * step, high = (k + 1.5) * step;
+            z->above[k] += count_between(s, low, high);
+            z->below[k] += count_between(s, -high, -low);
+        }
         return;
     }
     if (step > 0) {
         const double reach = floor(0.5 * s->scale / step);
-        const double due = count_near(s, (reach + 0.5) * step) / (2 * reach);
+        const double limit = (reach + 0.5) * step;
+        const double due = count_between(s, -limit, limit) / (2 * reach);
         z->due += due;
         z->variance += due + due / (2 * reach);
     } else if (most_frequent(s) > REPEATS) {
@@ -124,11 +127,17 @@ void imki_screen_zeros(imk_screener *s)
 
 double imki_zeros_excess(const imki_zeros *z, double present)
 {
+    const double least = fmin(fmin(z->above[0], z->above[1]), fmin(z->below[0], z->below[1]));
     double due = z->due, variance = z->variance, zeros = z->fine;
-    if (z->one >= COUNTED_MIN && z->two >= COUNTED_MIN) {
-        const double here = imk_exp((4 * imk_ln(z->one) - imk_ln(z->two)) / 3);
+    if (least >= COUNTED_MIN) {
+        const double one = imk_ln(z->above[0]) + imk_ln(z->below[0]);
+        const double two = imk_ln(z->above[1]) + imk_ln(z->below[1]);
+        const double here = imk_exp((4 * one - two) / 6);
         due += here;
-        variance += here + here * here * (16 / z->one + 1 / z->two) / 18;
+        variance +=
+            here + here * here *
+                       (16 / z->above[0] + 16 / z->below[0] + 1 / z->above[1] + 1 / z->below[1]) /
+                       36;
         zeros += z->coarse;
     }
     const double excess = zeros - due;
