@@ -409,10 +409,12 @@ static const struct message {
                       "current is near, or turns with the unit only in part; turn the unit about "
                       "one point, a metre or more from the ground, from furniture and from walls. "
                       "The intervals hold only if the excess is random"},
-    {"mag_outliers", "{0} of {1} means of the magnetometer do not fit the others and are left out: "
+    {"mag_outliers", "{0} of {1} {2?}readings{2!}rests{?} of the magnetometer do not fit the "
+                     "others and are left out: "
                      "the field was another one there; turn the unit about one point, away from "
                      "steel"},
-    {"mag_left_out", "{0} of {1} means of the magnetometer do not fit the others and are left out"},
+    {"mag_left_out", "{0} of {1} {2?}readings{2!}rests{?} of the magnetometer do not fit the "
+                     "others and are left out"},
     /* calibrate_exposure.c */
     {"calibrate:no_unit",
      "{record}: {name} has no unit; write it into the header, such as {name} [{other}]"},
@@ -467,6 +469,10 @@ static const struct message {
      "--gravity {0.5f} m/s^2 differs by {2.2g} % from gravity at --position, {1.5f} m/s^2; real "
      "gravity differs by 0.05 % at most. The difference goes into the scale factors of the "
      "accelerometers: correct one of the two"},
+    {"range_below_gravity",
+     "the full scale of {name} is stated as {0.4g} m/s^2 (--accel-range, or the model), which is "
+     "below gravity: rests with more than that are left out as saturated; state that of the data "
+     "sheet, such as --accel-range 16g"},
     /* calibrate_terms.c */
     {"no_term", "--estimate names no term"},
     {"no_change_of_temperature", "no log has a column temperature [degC] that changes, so no term "

@@ -160,6 +160,78 @@ static void poses_that_do_not_suffice(void **state)
     sweep();
 }
 
+/* Turned about the vertical only; and a full scale that gravity exceeds. */
+static void one_attitude_to_gravity(void **state)
+{
+    (void)state;
+    put_unit(1, 1, 0);
+    put("yaw.yaml", "imukit_motion: 1\nsteps:\n  - repeat: {times: 12, steps: [hold 4 s, rotate z "
+                    "30 deg at 20 deg/s]}\nthen: hold\n");
+    assert_int_equal(run("$I simulate unit.yaml --motion yaw.yaml --rate 100Hz --duration 64s -o "
+                         "poses.csv"),
+                     0);
+    check_says("$I calibrate poses.csv " POSES, 1, err,
+               "rests have the same attitude to gravity: a turn about the vertical (heading)");
+    write_poses();
+    check_says("$I calibrate poses.csv --accel-range 0.9g " POSES, 1, err,
+               "the full scale of accel_x is stated as 8.826 m/s^2");
+    const char *line = "$I calibrate poses.csv --strict --accel-range 4g " POSES;
+    assert_int_equal(run(line), 0);
+    sweep();
+}
+
+/* Models whose axes are in order are not told to be named otherwise. */
+static void models_as_runs(void **state)
+{
+    (void)state;
+    put_unit(1, 1, 0);
+    put_poses(24, 0, 2);
+    simulate("poses.yaml", 3);
+    assert_int_equal(run("$I calibrate poses.csv -o a.yaml " POSES), 0);
+    simulate("poses.yaml", 4);
+    assert_int_equal(run("$I calibrate poses.csv -o b.yaml " POSES), 0);
+    const char *line = "$I calibrate a.yaml b.yaml -p repeatability -o runs.yaml && cat runs.yaml";
+    assert_int_equal(run(line), 0);
+    assert_null(strstr(err, "is axis"));
+    assert_null(strstr(out, "direction:"));
+    sweep();
+}
+
+#define MAGNETIC(statement)                                                                        \
+    "awk -F, -v OFS=, 'NR > 1 {" statement "} 1' poses.csv >bad.csv; $I calibrate bad.csv "
+
+/* What is said of a field that is the same, of one that is not, and of a rest beside steel; alone
+ * it is readings that are counted. */
+static void words_on_magnetometers(void **state)
+{
+    (void)state;
+    static const char same[] = "the dip of the field is the same in all attitudes";
+    put("unit.yaml", "imukit: 1\ngyro:\n  noise: {angle_random_walk: 0.3 deg/sqrt(h)}\n"
+                     "accel:\n  noise: {velocity_random_walk: 0.05 m/s/sqrt(h)}\n"
+                     "mag:\n  noise: {density: one-sided, white_noise: 40 nT/sqrt(Hz)}\n");
+    put_poses(24, 0, 2);
+    assert_int_equal(run("$I simulate unit.yaml --motion poses.yaml --rate 100Hz --seed 1 --field "
+                         "'20 1 43 uT' -o poses.csv"),
+                     0);
+    const char *line = "$I calibrate poses.csv --strict " POSES;
+    assert_int_equal(run(line), 0);
+    check_contains(out, same, line);
+    assert_null(strstr(out, "Rests left out for the magnetometer"));
+    line = MAGNETIC("for (i = 8; i < 11; i++) $i += sin(7 * i * int($1 / 6))") POSES;
+    assert_int_equal(run(line), 0);
+    check_contains(err, "the field is not the same in all attitudes", line);
+    check_contains(out, "the dip of the field is taken for the same", line);
+    assert_null(strstr(out, same));
+    line = MAGNETIC("if ($1 > 60 && $1 < 66) $8 += 9") POSES;
+    assert_int_equal(run(line), 0);
+    check_contains(err, "1 of 24 rests of the magnetometer do not fit", line);
+    check_contains(out, "Rests left out for the magnetometer: at 6", line);
+    line = MAGNETIC("if ($1 > 60 && $1 < 64) $8 += 9") "-p magnetometer";
+    assert_int_equal(run(line), 0);
+    check_contains(err, "readings of the magnetometer do not fit", line);
+    sweep();
+}
+
 static void gravity_of_another_place(void **state)
 {
     (void)state;
@@ -309,6 +381,9 @@ int main(void)
         cmocka_unit_test(wrong_ranges_are_told),
         cmocka_unit_test(mendings_are_all_told),
         cmocka_unit_test(poses_that_do_not_suffice),
+        cmocka_unit_test(one_attitude_to_gravity),
+        cmocka_unit_test(models_as_runs),
+        cmocka_unit_test(words_on_magnetometers),
         cmocka_unit_test(gravity_of_another_place),
         cmocka_unit_test(models_that_do_not_describe_the_log),
         cmocka_unit_test(only_labelled_rests_are_holds),

@@ -301,6 +301,22 @@ static imk_status match_axes(imk_calibrate_log *b, int sensor, imk_error *error)
     return IMK_OK;
 }
 
+/* An axis that points up or down is then beyond its full scale. */
+static void tell_small_range(imk_calibrate_log *b)
+{
+    const imk_triad *accel = &b->calibration->model.accel;
+    for (int i = 0; i < accel->axis_count; i++) {
+        const double range = accel->range.value[i];
+        char name[48];
+        if (!(range > 0 && range < b->calibration->gravity))
+            continue;
+        imk_axis_name("accel", i, name);
+        imki_find(&b->findings, IMK_FINDING_WARNING, "range_below_gravity", name,
+                  IMKI_NUMBERS(range));
+        return;
+    }
+}
+
 /* Where gravity is the reference, its amount is the scale of the accelerometers. */
 static void tell_gravity(imk_calibrate_log *b)
 {
@@ -308,6 +324,8 @@ static void tell_gravity(imk_calibrate_log *b)
     for (size_t k = 0; k < b->count; k++)
         needed = needed || (b->record[k].record.axis_count[1] > 0 &&
                             b->record[k].procedure < IMK_PROCEDURE_RATE_TABLE);
+    if (needed)
+        tell_small_range(b);
     if (needed && !b->settings.place_known && isnan(b->settings.gravity))
         imki_find(&b->findings, IMK_FINDING_WARNING, "calibrate:gravity", NULL,
                   IMKI_NUMBERS(b->calibration->gravity));

@@ -327,10 +327,12 @@ static void check_residuals(imk_calibrate_log *b, const imk_magnetometer_result 
                   IMKI_NUMBERS(1e6 * off, ratio, 100 * off / field));
     if (10 * r->refused > b->magnetometer->count)
         imki_find(&b->findings, IMK_FINDING_WARNING, "mag_outliers", NULL,
-                  IMKI_NUMBERS((double)r->refused, (double)b->magnetometer->count));
+                  IMKI_NUMBERS((double)r->refused, (double)b->magnetometer->count,
+                               b->magnetometer->series));
     else if (r->refused > 0)
         imki_find(&b->findings, IMK_FINDING_NOTE, "mag_left_out", NULL,
-                  IMKI_NUMBERS((double)r->refused, (double)b->magnetometer->count));
+                  IMKI_NUMBERS((double)r->refused, (double)b->magnetometer->count,
+                               b->magnetometer->series));
 }
 
 bool imki_magnetometer_result(imk_calibrate_log *b, imk_error *error)

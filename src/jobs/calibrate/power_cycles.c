@@ -7,6 +7,7 @@
 #include "jobs/job_internal.h"
 
 #include "imukit/distributions.h"
+#include "imukit/simulate_log.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -168,11 +169,12 @@ static imk_status check_alike(imk_calibrate_log *b, const imk_model *model, cons
  */
 static void take_axes(imk_calibrate_log *b, const imk_model *first)
 {
-    for (size_t k = 0; k < b->count; k++) {
-        imk_test_record *record = &b->record[k].record;
-        record->axis_count[0] = first->gyro.present ? first->gyro.axis_count : 0;
-        record->axis_count[1] = first->accel.present ? first->accel.axis_count : 0;
-    }
+    for (size_t k = 0; k < b->count; k++)
+        for (int sensor = 0; sensor < 2; sensor++) {
+            const imk_triad *triad = imk_model_triad(first, sensor);
+            b->record[k].record.axis_count[sensor] = triad->present ? triad->axis_count : 0;
+            imk_triad_axes(triad, b->record[k].body_axis[sensor]);
+        }
 }
 
 static imk_status take_model(imk_calibrate_log *b, const imk_model *model, const imk_model *first,

@@ -310,6 +310,14 @@ imki_calibrate_message imki_message_on_log(const imk_calibrate_log *b,
                 IMK_FINDING_FAILURE, "never_moves",
                 "all rows are of one attitude: --pose-means needs a row for each of several "
                 "attitudes; if the rows are the samples of a log, leave --pose-means out");
+        if (log->interval_count > 1)
+            return imki_calibrate_say(
+                IMK_FINDING_FAILURE, "never_moves",
+                "all %zu rests have the same attitude to gravity: a turn about the vertical "
+                "(heading) changes nothing that accelerometers read. Put the unit on its other "
+                "faces, edges and corners; to identify the noise of a unit that was not moved, use "
+                "imukit identify",
+                log->interval_count);
         return imki_calibrate_say(
             IMK_FINDING_FAILURE, "never_moves",
             "the unit is stationary in one pose all the time: turn the unit to other poses, "

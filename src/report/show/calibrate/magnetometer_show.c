@@ -3,6 +3,8 @@
 #include "calibrate_show_internal.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 static const double degree = 0.017453292519943295;
 
@@ -80,12 +82,44 @@ void imki_magnetometer_row(const imk_calibrate_log *b, imk_table *table)
                   unit.text);
 }
 
+static bool is_told(const imk_calibrate_log *b, const char *code)
+{
+    for (size_t k = 0; k < b->findings.count; k++)
+        if (strcmp(b->findings.item[k].code, code) == 0)
+            return true;
+    return false;
+}
+
+/* Rests without weight, by time; readings in motion are too many. */
+static void show_refused(const imk_calibrate_log *b, imk_result *result)
+{
+    enum { LISTED_MAX = 8 };
+    const imk_magnetometer *problem = b->magnetometer;
+    size_t refused = 0;
+    imki_text list = {0};
+    for (size_t k = 0; !problem->series && k < problem->count; k++) {
+        const imk_magnetometer_observation *o = &problem->observation[k];
+        const imk_test_record *record = &b->record[o->record].record;
+        if (o->weight > 0 || ++refused > LISTED_MAX)
+            continue;
+        imki_list_item(&list, "%.2f s", imk_test_record_time(record, o->begin));
+        if (b->count > 1)
+            imki_text_add(&list, " of %s", record->name);
+    }
+    if (refused > LISTED_MAX)
+        imki_text_add(&list, " and %zu more", refused - LISTED_MAX);
+    if (refused > 0)
+        imk_result_line(result, "Rests left out for the magnetometer: at %s.", list.bytes);
+    free(list.bytes);
+}
+
 void imki_magnetometer_remarks(const imk_calibrate_log *b, imk_result *result)
 {
     const imk_magnetometer_result *r = b->mag;
     char field[40], dip[40];
     if (!r)
         return;
+    show_refused(b, result);
     imk_readable_value(1e6 * r->value[IMK_MAGNETOMETER_FIELD],
                        1e6 * r->sigma[IMK_MAGNETOMETER_FIELD], 5, field, sizeof field);
     if (r->field_known)
@@ -108,7 +142,11 @@ void imki_magnetometer_remarks(const imk_calibrate_log *b, imk_result *result)
     imk_result_line(
         result,
         "It is aligned to the axes of the accelerometers, against which it is turned by "
-        "%.3g deg: the dip of the field is the same in all attitudes, %s deg. Hard iron "
+        "%.3g deg: the dip of the field is %s, %s deg. Hard iron "
         "is its bias; soft iron, scale and alignment are one matrix.",
-        r->nearest_angle / degree, dip);
+        r->nearest_angle / degree,
+        is_told(b, "mag_disturbed") ? "taken for the same in all attitudes, although the field is "
+                                      "not"
+                                    : "the same in all attitudes",
+        dip);
 }
