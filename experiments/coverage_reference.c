@@ -6,9 +6,11 @@
  * usage: coverage_reference [BENCHES] [SEED] [PROCEDURE]
  *
  * Prints for every parameter how often the 95 % interval holds the truth and the mean and root mean
- * square of the errors in sigmas; then the same with a tenth of the holds disturbed. Every unit has
- * a g-sensitivity of 20 deg/h/g; the last two programmes do not tell it from the bias. Of sines, in
- * blocks of 50 ms, a tenth of BENCHES are done, of spins a fifth. */
+ * square of the errors in sigmas; then the same with a tenth of the holds disturbed, with axes
+ * whose noise is 1 : 4 : 16, and where besides every hold is off by as much on each axis, some
+ * times the noise of the quietest. Every unit has a g-sensitivity of 20 deg/h/g; the last two
+ * programmes do not tell it from the bias. Of sines, in blocks of 50 ms, a tenth of BENCHES are
+ * done, of spins a fifth. */
 #include "../tests/calibrate/coverage.h"
 #include "../tests/calibrate/reference_session.h"
 
@@ -30,7 +32,15 @@ static const struct {
      session_rate_upright, 1, true},
 };
 
-static void run(size_t which, size_t benches, uint64_t seed, double bad)
+static const struct {
+    const char *name;
+    double bad, unequal, push[2];
+} faults[] = {{"0 % bad", 0.0, 1.0, {0.0, 0.0}},
+              {"10 % bad", 0.1, 1.0, {0.0, 0.0}},
+              {"axes 1 : 4 : 16", 0.0, 4.0, {0.0, 0.0}},
+              {"axes 1 : 4 : 16, equal errors of holds", 0.0, 4.0, {1e-4, 2e-3}}};
+
+static void run(size_t which, size_t fault, size_t benches, uint64_t seed)
 {
     session *b = malloc(sizeof *b);
     coverage_count count = {0};
@@ -42,9 +52,11 @@ static void run(size_t which, size_t benches, uint64_t seed, double bad)
         b->settings.nonlinear = true;
     if (b->procedure == IMK_PROCEDURE_RATE_TABLE)
         b->settings.sine_block = 0.05;
+    b->unequal = faults[fault].unequal;
+    memcpy(b->push, faults[fault].push, sizeof b->push);
     for (size_t i = 0; i < benches; i++) {
         imk_error error;
-        session_log(b, seed * 1000000 + i, bad);
+        session_log(b, seed * 1000000 + i, faults[fault].bad);
         if (session_solve(b, &error) == IMK_OK) {
             coverage_take(&count, &b->calibration, &b->result, &b->truth);
             continue;
@@ -53,8 +65,8 @@ static void run(size_t which, size_t benches, uint64_t seed, double bad)
             printf("%s: %s %s %g %g\n", imk_status_name(error.status), error.field, error.expected,
                    error.value, error.limit);
     }
-    printf("%s, %.0f %% bad: %zu benches, %zu refused, %zu observations, not determined:",
-           programmes[which].name, 100.0 * bad, count.benches, count.failed,
+    printf("%s, %s: %zu benches, %zu refused, %zu observations, not determined:",
+           programmes[which].name, faults[fault].name, count.benches, count.failed,
            b->findings.observations);
     for (size_t i = 0; i < b->findings.undetermined_count && i < IMK_UNDETERMINED_MAX; i++) {
         char name[IMK_MODEL_PARAMETER_NAME];
@@ -74,8 +86,8 @@ int main(int argc, char **argv)
     const uint64_t seed = argc > 2 ? (uint64_t)atol(argv[2]) : 1;
     const int only = argc > 3 ? atoi(argv[3]) : -1;
     for (size_t i = 0; i < sizeof programmes / sizeof *programmes; i++)
-        for (int bad = 0; bad < 2; bad++)
+        for (size_t fault = 0; fault < sizeof faults / sizeof *faults; fault++)
             if (only < 0 || (size_t)only == i)
-                run(i, (benches + programmes[i].part - 1) / programmes[i].part, seed, 0.1 * bad);
+                run(i, fault, (benches + programmes[i].part - 1) / programmes[i].part, seed);
     return 0;
 }

@@ -201,7 +201,7 @@ typedef enum imk_diagnostic {
     IMK_DIAGNOSTIC_ONE_CONE, /**< as ONE_PLANE, and the force along `axis` is nearly the same in all
                                 poses and not 0 */
     IMK_DIAGNOSTIC_UNEQUAL_AXES, /**< the sigmas stated of `axis` and `other` of `sensor`, the
-                                    quietest and the noisiest, differ by the factor `value`, and few
+                                    quietest and the noisiest, differ by the factor `value`, and no
                                     residuals tell what else makes them scatter */
     IMK_DIAGNOSTICS
 } imk_diagnostic;

@@ -25,7 +25,10 @@ typedef struct session {
     double log[6][BENCH_SAMPLES], slow[6][BENCH_SAMPLES];
     imk_model truth;             /* run constants and the mean of the slow noise included */
     void (*slower)(imk_model *); /* makes the noise of a unit slower; NULL: as session_unit() */
-    bool noise_known;            /* the calibration is told the noise */
+    double unequal; /* white noise of each axis over that of the axis before it; 0: 1 */
+    double
+        push[2]; /* 1 sigma of what each hold adds to every gyro [rad/s], accelerometer [m/s^2] */
+    bool noise_known; /* the calibration is told the noise */
     imk_test_record record;
     imk_procedure_settings settings;
     imk_calibration calibration;
@@ -306,12 +309,29 @@ static inline void session_start(session *b, imk_procedure procedure, void (*pro
     b->workspace = malloc(b->workspace_size);
 }
 
+/* Every hold is off by as much on each axis of a sensor. */
+static inline void session_push(session *b, uint64_t seed)
+{
+    double normal[6 * BENCH_HOLDS];
+    imk_random_normals(imk_random_seeded(seed), imk_stream(0, 903, 0, 0), 0, 6 * BENCH_HOLDS,
+                       normal);
+    for (size_t h = 0; h < b->holds; h++)
+        for (size_t k = b->hold_begin[h]; k < b->hold_end[h]; k++)
+            for (size_t c = 0; c < 6; c++)
+                b->log[c][k] += b->push[c / 3] * normal[6 * h + c];
+}
+
 /* The log of unit `seed`; `bad` of its holds are disturbed. */
 static inline void session_log(session *b, uint64_t seed, double bad)
 {
     b->truth = session_unit(b->procedure, seed);
     if (b->slower)
         b->slower(&b->truth);
+    for (int axis = 1; axis < 3 && b->unequal > 0.0; axis++) {
+        double *gyro = b->truth.gyro.noise.white.value, *accel = b->truth.accel.noise.white.value;
+        gyro[axis] = b->unequal * gyro[axis - 1];
+        accel[axis] = b->unequal * accel[axis - 1];
+    }
     session_run(b, &b->truth, seed, (uint32_t)seed, true, b->log);
     session_true_bias(b, seed, (uint32_t)seed);
     /* An encoder of 2e-7 rad: its rates are differences of rounded angles. */
@@ -324,6 +344,8 @@ static inline void session_log(session *b, uint64_t seed, double bad)
             shown = next;
         }
     }
+    if (b->push[0] > 0.0)
+        session_push(b, seed);
     double luck[BENCH_HOLDS], size[BENCH_HOLDS];
     imk_random_normals(imk_random_seeded(seed), imk_stream(0, 901, 0, 0), 0, BENCH_HOLDS, luck);
     imk_random_normals(imk_random_seeded(seed), imk_stream(0, 902, 0, 0), 0, BENCH_HOLDS, size);

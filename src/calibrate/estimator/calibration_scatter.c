@@ -11,9 +11,13 @@
  *
  *     sum ln V + ln det N + sum residual^2/V + 2 (number of factors),
  *
- * the restricted likelihood [PATTERSON1971] and the price of a parameter [AKAIKE1978]. Axes that
- * have the same sigmas cannot tell the first from the third; it is the same to them, and the first
- * stays.
+ * the restricted likelihood [PATTERSON1971] and the price of a parameter [AKAIKE1978]. Where all
+ * sigmas are alike the last two are the first two, and are not tried. Where they are not, an
+ * addition is the likelier cause: the noise of an axis has been measured within the holds.
+ *
+ * Turns between rests have a factor too. An excess of accelerometers may look like one of turns,
+ * because rests and turns disagree about the same attitudes; so each form of the accelerometers
+ * that is common to the axes is also tried with turns as stated.
  *
  * Few residuals do not tell which form is right. So the values are those of the chosen form, and
  * the intervals those that all forms together hold, each weighted by exp(-criterion/2)
@@ -28,13 +32,16 @@
 
 /* A factor that is chosen has so many degrees of freedom, one of an axis a little more. */
 static const double least_freedom = 3.0, least_axis_freedom = 4.0, least_added_freedom = 1.0;
-/* Errors of poses are looked for where the factor is above this. */
+/* Errors of poses are looked for where the factor is above this, or that of turns above 1. */
 static const double least_excess = 0.9;
-/* Axes that differ by more than their noise within holds says are not usual: -2 ln of 0.14. */
-static const double unlike_price = 4.0;
+/* Sigmas whose root mean square is less than this over their harmonic mean are alike. */
+static const double least_unlike = 1.1;
+/* Axes that differ by more than their noise within holds says are not usual: -2 ln of 0.14. Nor is
+ * an excess that is greater on noisy axes: -2 ln of 0.37. */
+static const double by_axis_price = 4.0, share_price = 2.0;
 
 typedef struct form {
-    bool by_axis[2];
+    bool by_axis[2], turns_stated;
     double added[2];
     double factor[IMKI_PARTS];
 } form;
@@ -43,6 +50,7 @@ static form form_of(const imki_estimator *e)
 {
     form f;
     memcpy(f.by_axis, e->by_axis, sizeof f.by_axis);
+    f.turns_stated = e->turns_stated;
     memcpy(f.added, e->added, sizeof f.added);
     memcpy(f.factor, e->factor, sizeof f.factor);
     return f;
@@ -51,6 +59,7 @@ static form form_of(const imki_estimator *e)
 static void take_form(imki_estimator *e, const form *f)
 {
     memcpy(e->by_axis, f->by_axis, sizeof f->by_axis);
+    e->turns_stated = f->turns_stated;
     memcpy(e->added, f->added, sizeof f->added);
     memcpy(e->factor, f->factor, sizeof f->factor);
 }
@@ -69,16 +78,19 @@ static double deviance(imki_estimator *e)
     return sum + e->cost + imki_normal_log_determinant(&e->normal);
 }
 
-/* Root mean square of the sigmas stated of a sensor, where the added sigma starts. */
-static double typical_sigma(const imki_estimator *e, int sensor)
+/* Root mean square of the sigmas stated of a sensor. */
+static double typical_sigma(const imki_estimator *e, int sensor, double *unlike)
 {
-    double square = 0.0, count = 0.0;
+    double square = 0.0, inverse = 0.0, count = 0.0;
     for (size_t i = 0; i < e->observations; i++)
         for (int axis = 0; axis < IMK_AXES_MAX; axis++)
             if (!isnan(e->reading[i][sensor][axis]) && e->weight[i] >= 1.0) {
-                square += e->sigma[i][sensor][axis] * e->sigma[i][sensor][axis];
+                const double variance = e->sigma[i][sensor][axis] * e->sigma[i][sensor][axis];
+                square += variance;
+                inverse += 1.0 / variance;
                 count += 1.0;
             }
+    *unlike = sqrt(square * inverse) / count;
     return sqrt(square / count);
 }
 
@@ -96,39 +108,77 @@ static bool is_rich(const imki_estimator *e, int sensor, const imki_fit *fit)
     return true;
 }
 
-/* Solve in another form. @return its deviance and price; HUGE_VAL: not possible */
-static double try_form(imki_estimator *e, int sensor, bool by_axis, bool added, imki_fit *fit)
+/* A form, in bits. */
+enum { BY_AXIS = 1, ADDED = 2, TURNS_STATED = 4, FORMS = 6 };
+
+static int form_bits(const imki_estimator *e, int sensor)
 {
-    const double factor = e->factor[imki_part_of(e, sensor, 0)];
-    int factors = 0;
-    e->by_axis[sensor] = by_axis;
-    e->added[sensor] = added ? typical_sigma(e, sensor) : 0.0;
+    return (e->by_axis[sensor] ? BY_AXIS : 0) | (e->added[sensor] > 0.0 ? ADDED : 0) |
+           (e->turns_stated ? TURNS_STATED : 0);
+}
+
+/* The forms to be tried, by the solution with one factor a group; the first is this. */
+static int list_forms(const imki_estimator *e, int sensor, int list[FORMS])
+{
+    const bool of_turns = sensor == IMK_ACCEL && e->factor[IMK_GROUP_TURN] > 1.0;
+    const bool excess = of_turns || e->factor[imki_part_of(e, sensor, 0)] > least_excess;
+    double unlike;
+    int count = 0;
+    (void)typical_sigma(e, sensor, &unlike);
+    for (int bits = 0; bits < (of_turns ? 8 : 4); bits++) {
+        const bool differs = !(bits & ADDED) || (excess && unlike > least_unlike);
+        if (differs && !(bits & TURNS_STATED && bits & BY_AXIS))
+            list[count++] = bits;
+    }
+    return count;
+}
+
+/* What its factors cost a form. */
+static double price(const imki_estimator *e, int sensor, const imki_fit *fit)
+{
+    const bool share = !(e->added[sensor] > 0.0) && e->factor[imki_part_of(e, sensor, 0)] > 1.0;
+    double unlike, sum = e->by_axis[sensor] ? by_axis_price : 0.0;
+    (void)typical_sigma(e, sensor, &unlike);
+    if (share && unlike > least_unlike)
+        sum += share_price;
+    for (int part = 0; part < IMKI_PARTS; part++)
+        sum += fit->estimated[part] ? 2.0 : 0.0;
+    return sum;
+}
+
+/* Solve in another form. @return its deviance and price; HUGE_VAL: not possible */
+static double try_form(imki_estimator *e, int sensor, int bits, imki_fit *fit)
+{
+    double factor = e->factor[imki_part_of(e, sensor, 0)], unlike;
+    e->by_axis[sensor] = bits & BY_AXIS;
+    e->added[sensor] = bits & ADDED ? typical_sigma(e, sensor, &unlike) : 0.0;
+    e->turns_stated = bits & TURNS_STATED;
+    if (e->turns_stated) {
+        factor *= e->factor[IMK_GROUP_TURN];
+        e->factor[IMK_GROUP_TURN] = 1.0;
+    }
     for (int axis = 0; axis < IMK_AXES_MAX; axis++)
         e->factor[imki_part_of(e, sensor, axis)] = factor;
     if (imki_estimator_covariance(e) != IMK_OK)
         return HUGE_VAL;
     imki_fit_groups(e, fit);
-    if (by_axis && !is_rich(e, sensor, fit))
+    if (e->by_axis[sensor] && !is_rich(e, sensor, fit))
         return HUGE_VAL;
     if (imki_variance_factors(e, 0.01, fit) != IMK_OK || !is_rich(e, sensor, fit))
         return HUGE_VAL;
-    for (int axis = 0; axis < (by_axis ? IMK_AXES_MAX : 1); axis++)
-        factors += fit->scaled[imki_part_of(e, sensor, axis)] != 0.0;
-    return deviance(e) + 2.0 * factors + (by_axis ? unlike_price : 0.0);
+    return deviance(e) + price(e, sensor, fit);
 }
 
 static imk_status choose(imki_estimator *e, int sensor, imki_fit *fit)
 {
     const form common = form_of(e);
-    const double factor = e->factor[imki_part_of(e, sensor, 0)];
     form best = common;
-    double least = deviance(e) + 2.0;
-    for (int way = 1; way < 4; way++) {
-        const bool by_axis = way & 1, added = way & 2;
-        if (added && !(factor > least_excess))
-            continue;
+    int list[FORMS];
+    const int count = list_forms(e, sensor, list);
+    double least = deviance(e) + price(e, sensor, fit);
+    for (int k = 1; k < count; k++) {
         take_form(e, &common);
-        const double reached = try_form(e, sensor, by_axis, added, fit);
+        const double reached = try_form(e, sensor, list[k], fit);
         if (reached < least) {
             least = reached;
             best = form_of(e);
@@ -140,8 +190,6 @@ static imk_status choose(imki_estimator *e, int sensor, imki_fit *fit)
 
 /* ---- all forms together -----------------------------------------------------------------------
  */
-
-enum { FORMS = 4 };
 
 /* Variance and degrees of freedom of a parameter by each form. */
 typedef struct opinions {
@@ -238,12 +286,6 @@ static double combine(const opinions *o, size_t p, double sigma)
     return 1.0 / find_zero(within, &bound, least, most);
 }
 
-/* Does the solution have this form? */
-static bool is_form(const form *f, int sensor, bool by_axis, bool added)
-{
-    return f->by_axis[sensor] == by_axis && (f->added[sensor] > 0.0) == added;
-}
-
 /* Variances and degrees by the form solved last, after `o->count` others. */
 static void keep_opinion(imki_estimator *e, const imki_fit *fit, opinions *o)
 {
@@ -255,24 +297,24 @@ static void keep_opinion(imki_estimator *e, const imki_fit *fit, opinions *o)
     o->count++;
 }
 
-/* What the forms say of the parameters of a sensor; the solution is the chosen one's. Sigmas that
- * are no smaller than the scatter leave nothing to be added. */
-static void ask_forms(imki_estimator *e, int sensor, opinions *o)
+/* What the forms say of the parameters of a sensor; the solution is the chosen one's. */
+static void ask_forms(imki_estimator *e, int sensor, const imki_fit *solution, opinions *o)
 {
     const form chosen = form_of(e);
-    bool excess = true;
+    const int bits = form_bits(e, sensor);
+    int list[FORMS] = {0}, count = 1;
     o->count = 0;
-    for (int way = 0; way < FORMS && (way < 2 || excess); way++) {
-        const bool by_axis = way & 1, added = way & 2;
-        imki_fit fit;
+    for (int k = 0; k < count; k++) {
+        imki_fit fit = *solution;
         take_form(e, &chosen);
         imki_point_copy(e, &e->best, &e->now);
-        if (!is_form(&chosen, sensor, false, false))
+        if (list[k] != bits && bits != 0)
             for (int axis = 0; axis < IMK_AXES_MAX; axis++)
                 e->factor[imki_part_of(e, sensor, axis)] = 1.0;
-        const double reached = try_form(e, sensor, by_axis, added, &fit);
-        if (way == 0 && reached < HUGE_VAL)
-            excess = e->factor[imki_part_of(e, sensor, 0)] > least_excess;
+        const double reached = list[k] == bits ? deviance(e) + price(e, sensor, &fit)
+                                               : try_form(e, sensor, list[k], &fit);
+        if (k == 0)
+            count = list_forms(e, sensor, list);
         if (!(reached < HUGE_VAL))
             continue;
         o->deviance[o->count] = reached;
@@ -290,12 +332,16 @@ static void ask_solution(imki_estimator *e, const imki_fit *fit, opinions *o)
     imki_freedoms(e, fit, o->variance[0], o->freedom[0]);
 }
 
+/* Parameters of a sensor (-1: of both) by its forms; those of the other, which turns tie to it, are
+ * not made more certain. */
 static void combine_all(const imki_estimator *e, int sensor, const opinions *o,
                         const double *variance, double *freedom)
 {
-    for (size_t p = 0; p < e->parameters; p++)
-        if (sensor < 0 || e->problem->parameter[p].sensor == sensor)
-            freedom[p] = combine(o, p, sqrt(variance[p]));
+    for (size_t p = 0; p < e->parameters; p++) {
+        const double combined = combine(o, p, sqrt(variance[p]));
+        const bool own = sensor < 0 || e->problem->parameter[p].sensor == sensor;
+        freedom[p] = own ? combined : fmin(freedom[p], combined);
+    }
 }
 
 imk_status imki_scatter_freedoms(imki_estimator *e, imki_fit *fit, double *freedom)
@@ -313,7 +359,7 @@ imk_status imki_scatter_freedoms(imki_estimator *e, imki_fit *fit, double *freed
         const int group = sensor == IMK_GYRO ? IMK_GROUP_GYRO : IMK_GROUP_ACCEL;
         if (!imki_sum_group(e, fit, group).estimated)
             continue;
-        ask_forms(e, sensor, &o);
+        ask_forms(e, sensor, fit, &o);
         set_weights(&o);
         asked = true;
         if (o.count > 1)
@@ -333,6 +379,7 @@ void imki_common_scatter(imki_estimator *e)
 {
     memset(e->by_axis, 0, sizeof e->by_axis);
     memset(e->added, 0, sizeof e->added);
+    e->turns_stated = false;
     for (int part = 0; part < IMKI_PARTS; part++)
         e->factor[part] = 1.0;
 }

@@ -220,7 +220,7 @@ static imk_status find_factors(imki_estimator *e, double tolerance, bool held[IM
 
 imk_status imki_variance_factors(imki_estimator *e, double tolerance, imki_fit *fit)
 {
-    bool held[IMKI_PARTS] = {false}, again = false;
+    bool held[IMKI_PARTS] = {[IMK_GROUP_TURN] = e->turns_stated}, again = false;
     imk_status status = find_factors(e, tolerance, held, fit);
     for (int g = 0; g < IMKI_PARTS; g++) {
         held[g] = held[g] || !(fit->freedom[g] >= least_freedom_of(e, g));

@@ -107,6 +107,7 @@ typedef struct imki_estimator {
     double factor[IMKI_PARTS]; /* of sigmas */
     bool by_axis[2];           /* axes of a sensor have factors of their own */
     double added[2]; /* > 0: the factor is of this sigma, added to those stated [rad/s], [m/s^2] */
+    bool turns_stated; /* the factor of turns is 1, whatever their residuals */
     imki_point now, trial, best;
     double best_factor[IMKI_PARTS];
     double *best_weight; /* per item */

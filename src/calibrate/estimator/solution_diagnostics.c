@@ -22,10 +22,10 @@ static const double residual_probability = 1e-6;
 /* ... and by how much the scatter must exceed them to matter. */
 static const double residual_factor = 3.0;
 
-/* Errors of poses that are alike on all axes are hidden by the noise of a noisy axis, and count on
- * a quiet one: where the sigmas differ by so much, and fewer degrees of freedom tell of it,
- * intervals of 95 % hold 88 to 93 % on the quietest (experiments/coverage_six_position.c). */
-static const double unlike_noise = 2.0, many_degrees = 20.0;
+/* Errors of poses that are alike on all axes count most on a quiet one. Where the sigmas differ by
+ * so much, and residuals with fewer degrees of freedom leave them as stated, nothing tells of such
+ * errors (experiments/coverage_six_position.c). */
+static const double unlike_noise = 2.0, least_freedom = 3.0;
 
 typedef struct list {
     imk_diagnostic_finding *diagnostic;
@@ -91,7 +91,7 @@ static void look_at_residuals(const imk_calibration_result *result, list *l)
     }
 }
 
-/* Axes of unequal noise, of which few residuals tell more. */
+/* Axes of unequal noise, of which no residuals tell more. */
 static void look_at_axes(const imk_calibration_result *result, list *l)
 {
     for (int sensor = 0; sensor < 2; sensor++) {
@@ -105,8 +105,8 @@ static void look_at_axes(const imk_calibration_result *result, list *l)
             if (noise > 0.0 && (noisy < 0 || noise > g->axis_noise[noisy]))
                 noisy = axis;
         }
-        const bool few = g->degrees_of_freedom >= 1.0 && g->degrees_of_freedom < many_degrees;
-        if (few && quiet >= 0 && g->axis_noise[noisy] > unlike_noise * g->axis_noise[quiet])
+        if (g->degrees_of_freedom < least_freedom && quiet >= 0 &&
+            g->axis_noise[noisy] > unlike_noise * g->axis_noise[quiet])
             add(l, IMK_DIAGNOSTIC_UNEQUAL_AXES, sensor, quiet, noisy,
                 g->axis_noise[noisy] / g->axis_noise[quiet], unlike_noise);
     }

@@ -91,7 +91,7 @@ static imki_calibrate_message unexplained(const imk_calibrate_log *b,
         groups[g].what, rms / unit.scale, unit.text, sqrt(d->value), d->value, groups[g].causes);
 }
 
-/* The noise of each axis, and what few residuals leave open. */
+/* The noise of each axis, and what no residuals tell. */
 static imki_calibrate_message unequal_axes(const imk_calibrate_log *b,
                                            const imk_diagnostic_finding *d)
 {
@@ -104,13 +104,12 @@ static imki_calibrate_message unequal_axes(const imk_calibrate_log *b,
     return imki_calibrate_say(
         IMK_FINDING_WARNING, "unequal_axes",
         "the noise of %s_%c (1 sigma of a mean %.3g %s) is %.3g times that of %s_%c (%.3g %s), and "
-        "the residuals, with only %.1f degrees of freedom, do not tell how much the errors of the "
-        "poses add to each: the 95 %% intervals of %s_%c may hold in 88 %% only, those of %s_%c "
-        "may "
-        "be too wide; add poses or repeat the faces, and look for what disturbs %s_%c",
+        "nothing in this log tells how far errors of poses exceed the noise: the intervals take "
+        "the "
+        "noise for all there is, and those of %s_%c may be much too narrow; add poses or repeat "
+        "the faces, and look for what disturbs %s_%c",
         key, noisy, g->axis_noise[d->other] / unit.scale, unit.text, d->value, key, quiet,
-        g->axis_noise[d->axis] / unit.scale, unit.text, g->degrees_of_freedom, key, quiet, key,
-        noisy, key, noisy);
+        g->axis_noise[d->axis] / unit.scale, unit.text, key, quiet, key, noisy);
 }
 
 static imki_calibrate_message on_solution(const imk_calibrate_log *b,
