@@ -54,7 +54,8 @@ foreach(target ${test_targets})
     SOURCE_DIRECTORY="${PROJECT_SOURCE_DIR}"
     SHARED_DIRECTORY="${PROJECT_SOURCE_DIR}/../shared")
 endforeach()
-target_compile_options(imukit-tests PRIVATE ${imukit_seldom_run})
+# Compiling them with more takes longer than they run.
+target_compile_options(imukit-tests PRIVATE -O1 ${imukit_seldom_run})
 if(TARGET imukit-command)
   add_dependencies(imukit-tests imukit-command)
   target_compile_definitions(imukit-tests PRIVATE IMUKIT_COMMAND="$<TARGET_FILE:imukit-command>")

@@ -239,6 +239,8 @@ static void bad_columns_are_explained(void **state)
     (void)state;
     write_log();
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        if (check_skips(k, 2))
+            continue;
         alter(cases[k].program);
         check_says("$I calibrate bad.csv " POSES " -o never.yaml", cases[k].code, cases[k].says);
         assert_int_equal(access("never.yaml", F_OK) == 0, cases[k].code == 0);

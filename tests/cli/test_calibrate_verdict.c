@@ -102,11 +102,13 @@ static void wrong_ranges_are_told(void **state)
     write_poses();
     check_says(CHANGED("for (i = 2; i < 5; i++) $i *= 0.5"), 1, out,
                "a range of the device that is 2 times that of the conversion");
-    check_says(CHANGED("for (i = 2; i < 5; i++) $i *= 4"), 1, err,
-               "a range of the device that is 1/4 times");
-    check_says(CHANGED("$2 *= 1.3"), 0, err, "gyro_x reads 1.3");
-    check_says(CHANGED("for (i = 5; i < 8; i++) $i *= 1.18"), 0, err,
-               "all accelerometers read 1.18");
+    if (!check_quick()) { /* they go the same way */
+        check_says(CHANGED("for (i = 2; i < 5; i++) $i *= 4"), 1, err,
+                   "a range of the device that is 1/4 times");
+        check_says(CHANGED("$2 *= 1.3"), 0, err, "gyro_x reads 1.3");
+        check_says(CHANGED("for (i = 5; i < 8; i++) $i *= 1.18"), 0, err,
+                   "all accelerometers read 1.18");
+    }
     check_says(CHANGED("for (i = 5; i < 8; i++) $i *= 2"), 1, out,
                "it looks like a range of the device that is 1/2 times");
     /* What some sensors have is a note. */

@@ -267,20 +267,21 @@ static void test_one_level(void **state)
 /* Three plans of 120 tables. Intervals of the line and of the precision are exact: of 360, more
  * than 44 or less than 2 miss with a probability below 1e-6 (binomial, 5 %). Those of extremes hold
  * at least about what they say (93.4 … 98.7 % of 3000, experiments/coverage_evaluate.c): more than
- * 54 misses have less than 1e-6 at 7 %. */
+ * 54 misses have less than 1e-6 at 7 %. Of 36, it is 11 and 13. */
 static void test_coverage(void **state)
 {
     (void)state;
     static const size_t plans[3] = {0, 2, 4};
+    const int tables = check_quick() ? 12 : 120;
     evaluation_score score[EVALUATION_FIGURES] = {{0}};
     for (size_t k = 0; k < 3; k++)
-        evaluation_cover(&evaluation_plans[plans[k]], (uint32_t)plans[k], 120, 1, score);
+        evaluation_cover(&evaluation_plans[plans[k]], (uint32_t)plans[k], tables, 1, score);
     for (int k = 0; k < EVALUATION_FIGURES; k++) {
         const bool exact = k <= 2 || k == 8;
         const double misses = score[k].high + score[k].low;
-        CHECK_CLOSE(score[k].stated, 360.0, 0.0);
-        CHECK_BELOW(misses, exact ? 44.0 : 54.0);
-        if (exact)
+        CHECK_CLOSE(score[k].stated, 3.0 * tables, 0.0);
+        CHECK_BELOW(misses, check_quick() ? (exact ? 11.0 : 13.0) : exact ? 44.0 : 54.0);
+        if (exact && !check_quick())
             CHECK_BELOW(-misses, -2.0);
     }
 }

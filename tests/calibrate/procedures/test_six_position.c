@@ -375,7 +375,7 @@ static void test_bad_holds_refused(void **state)
     (void)state;
     static const session_plan plan = {5, 8, 0, 1.7e-3, 0.1, 0, 0, 0};
     static coverage_count count;
-    const uint32_t benches = check_runs(16);
+    const uint32_t benches = check_quick() ? 4 : 16;
     session *b = session_new();
     memset(&count, 0, sizeof count);
     size_t refused = 0;

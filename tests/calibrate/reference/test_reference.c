@@ -261,12 +261,12 @@ static void test_offset_refused(void **state)
 /* Benches of raw samples: of n the 95 % interval holds the truth in about 0.95 n. What is checked
  * are all parameters together, which share a log and are not independent of each other: their
  * number counts as a tenth. A false alarm has the probability 1e-6 for the share (normal quantile
- * 4.9) and for the bias of each parameter. */
+ * 4.9) and for the bias of each parameter. Under the sanitizers two benches will do. */
 static void cover(imk_procedure procedure, void (*programme)(session *), uint32_t full, double bad)
 {
     coverage_count count = {0};
     imk_error error;
-    const uint32_t benches = full > 8 ? check_runs(full) : full;
+    const uint32_t benches = check_quick() ? 2 : full;
     start(procedure, programme);
     if (procedure == IMK_PROCEDURE_TUMBLE)
         shared->settings.nonlinear = true;

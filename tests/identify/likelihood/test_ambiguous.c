@@ -70,6 +70,12 @@ static void round_output(const truth *t, double *x)
     }
 }
 
+/* Of `full` records a half under the sanitizers. */
+static uint64_t records_of(uint64_t full)
+{
+    return check_quick() ? full / 2 : full;
+}
+
 static imk_identification identify(const truth *t, uint64_t seed)
 {
     double *x = calloc(N, sizeof *x);
@@ -130,7 +136,7 @@ static void test_ramp_or_walk(void **state)
     (void)state;
     const truth t = {.white = 1, .bias_instability = 1, .ramp = 0.025};
     size_t walks = 0;
-    for (uint64_t seed = 1; seed <= RECORDS; seed++) {
+    for (uint64_t seed = 1; seed <= records_of(RECORDS); seed++) {
         const imk_identification r = identify(&t, seed);
         const imk_estimate *k = &r.term[IMK_NOISE_RANDOM_WALK];
         check_bits(&r);
@@ -151,7 +157,7 @@ static void test_flicker_or_gauss_markov(void **state)
     (void)state;
     const truth t = {.white = 1, .slow = {0.7, 5}};
     size_t called = 0, wrong = 0;
-    for (uint64_t seed = 1; seed <= RECORDS; seed++) {
+    for (uint64_t seed = 1; seed <= records_of(RECORDS); seed++) {
         const imk_identification r = identify(&t, seed);
         const imk_estimate *b = &r.term[IMK_NOISE_BIAS_INSTABILITY];
         check_bits(&r);
@@ -190,7 +196,7 @@ static void test_widest_resonance(void **state)
     (void)state;
     const truth t = {.white = 1, .bias_instability = 1, .resonance = {4, 5, 3}};
     size_t called = 0;
-    for (uint64_t seed = 1; seed <= 2 * RECORDS; seed++) {
+    for (uint64_t seed = 1; seed <= records_of(2 * RECORDS); seed++) {
         const imk_identification r = identify(&t, seed);
         for (int i = 0; i < r.gauss_markov_count; i++)
             assert_true(r.gauss_markov[i].sigma.lower == 0);
@@ -225,12 +231,12 @@ static void test_clear(void **state)
     (void)state;
     const truth t = {.white = 1, .bias_instability = 4};
     size_t clear = 0;
-    for (uint64_t seed = 1; seed <= RECORDS; seed++) {
+    for (uint64_t seed = 1; seed <= records_of(RECORDS); seed++) {
         const imk_identification r = identify(&t, seed);
         check_bits(&r);
         clear += r.term[IMK_NOISE_BIAS_INSTABILITY].lower > 0;
     }
-    assert_int_equal(clear, RECORDS);
+    assert_int_equal(clear, records_of(RECORDS));
 }
 
 /* Steps in standard deviations of a sample up to which rounding errors are white: 1.6 for the rate,
@@ -264,7 +270,7 @@ static void test_filter_and_steps(void **state)
 {
     (void)state;
     const truth t = {.white = 1, .filter = {5, 0}, .step = 2, .mean = 0.7};
-    for (uint64_t seed = 1; seed <= RECORDS; seed++) {
+    for (uint64_t seed = 1; seed <= records_of(RECORDS); seed++) {
         const imk_identification r = identify(&t, seed);
         const imk_estimate *n = &r.term[IMK_NOISE_WHITE];
         CHECK_CLOSE(n->value, 1, 1.25 * (n->upper - n->lower));
@@ -285,12 +291,12 @@ static void test_filter_and_resonance(void **state)
     (void)state;
     const truth t = {.white = 1, .bias_instability = 1, .filter = {20, 0}, .resonance = {6, 20, 8}};
     double sum = 0;
-    for (uint64_t seed = 1; seed <= RECORDS; seed++) {
+    for (uint64_t seed = 1; seed <= records_of(RECORDS); seed++) {
         const imk_identification r = identify(&t, seed);
         const imk_estimate *n = &r.term[IMK_NOISE_WHITE];
         CHECK_CLOSE(n->value, 1, 1.25 * (n->upper - n->lower));
         assert_int_equal(r.gauss_markov_count, 0);
-        sum += n->value / RECORDS;
+        sum += n->value / (double)records_of(RECORDS);
     }
     CHECK_CLOSE(sum, 1, 0.015); /* the mean scatters by 0.4 % */
 }
@@ -302,7 +308,7 @@ static void test_undetermined(void **state)
     (void)state;
     const truth t = {.quantization = 100, .white = 1};
     size_t doubts = 0;
-    for (uint64_t seed = 1; seed <= 3 * RECORDS; seed++) {
+    for (uint64_t seed = 1; seed <= records_of(3 * RECORDS); seed++) {
         const imk_identification r = identify(&t, seed);
         bool wide = false;
         for (int term = IMK_NOISE_QUANTIZATION; term <= IMK_NOISE_WHITE; term++)

@@ -100,6 +100,8 @@ static void test_known_contents(void **state)
     imk_identification r;
     imk_error error;
     for (int channel = 0; channel < 6; channel++) {
+        if (check_skips((size_t)channel, 2))
+            continue;
         const bool gyro = channel < 3;
         const int column = imk_log_find(
             &log, gyro ? IMK_QUANTITY_ANGULAR_RATE : IMK_QUANTITY_SPECIFIC_FORCE, channel % 3);

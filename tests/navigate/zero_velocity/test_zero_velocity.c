@@ -150,7 +150,7 @@ static void error_of(const unit *u, const imk_navigation_state *state, double e[
 /* e^T P^-1 e over the chosen states; scaled, since metres and radians differ by much. */
 static double normalised(const double e[9], double p[9][9], size_t count, const int *state)
 {
-    double l[81], x[9], scale[9], sum = 0.0;
+    double l[81], x[9] = {0}, scale[9], sum = 0.0;
     for (size_t i = 0; i < count; i++)
         scale[i] = 1.0 / sqrt(p[state[i]][state[i]]);
     for (size_t i = 0; i < count; i++) {
