@@ -252,7 +252,7 @@ void imki_screen_conclude(imk_screener *s)
     f->outliers.first = f->outliers.count > 0 ? f->outliers.first : f->n;
     f->stuck.first = f->stuck.count > 0 ? f->stuck.first : f->n;
     f->lost.first = f->lost.count > 0 ? f->lost.first : f->n;
-    f->zeros = imki_zeros_excess(&s->zeros, (double)f->present);
+    f->zeros = imki_zeros_excess(&s->zeros);
     find_saturation(s);
     find_tails(s);
     f->interpolated = imki_cycles_find(&s->cycles, 0.1 * s->settings.significance, f->sensor_rate);

@@ -140,7 +140,7 @@ static void take_chunk(imk_screener *s, int at)
         s->counting.run = 0;
     else
         count_missing(s, index * CHUNK, count, samples);
-    imki_screen_moments(s, count, samples, s->found.missing.count - before);
+    imki_screen_moments(s, at, s->found.missing.count - before);
     imki_screen_repeats(s, at, whole);
 }
 
@@ -210,6 +210,8 @@ static void rotate(imk_screener *s)
     s->warm[1] = warm;
     s->count[0] = s->count[1];
     s->count[1] = 0;
+    s->lowest[0] = s->lowest[1];
+    s->highest[0] = s->highest[1];
     s->chunk_repeats[0] = s->chunk_repeats[1];
     s->chunk_whole[0] = s->chunk_whole[1];
     s->chunk_repeats[1] = 0;

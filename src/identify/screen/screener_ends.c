@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-enum { PILE_MIN = 10 };
+enum { LANES = 8, PILE_MIN = 10 };
 
 static void count_at(imki_ends *e, size_t at, size_t place)
 {
@@ -47,8 +47,82 @@ static void enter(imki_ends *e, double value, size_t place)
     count_at(e, at, place);
 }
 
+/* Samples of one value; in lanes that the compiler makes vectors of. */
+static size_t count_equal(size_t count, const double *x, double value)
+{
+    double equal[LANES] = {0};
+    for (size_t i = 0; i < count; i += LANES) {
+        const size_t width = count - i < LANES ? count - i : LANES;
+        for (size_t l = 0; l < width; l++)
+            equal[l] += x[i + l] == value ? 1 : 0;
+    }
+    for (size_t l = 1; l < LANES; l++)
+        equal[0] += equal[l];
+    return (size_t)equal[0];
+}
+
+/* Samples of one value that follow another one. */
+static size_t count_runs(size_t count, const double *x, double value)
+{
+    double runs[LANES] = {x[0] == value};
+    for (size_t i = 1; i < count; i += LANES) {
+        const size_t width = count - i < LANES ? count - i : LANES;
+        for (size_t l = 0; l < width; l++)
+            runs[l] += (x[i + l] == value ? 1.0 : 0.0) * (x[i + l - 1] != value ? 1.0 : 0.0);
+    }
+    for (size_t l = 1; l < LANES; l++)
+        runs[0] += runs[l];
+    return (size_t)runs[0];
+}
+
+static size_t count_beyond(size_t count, const double *x, double limit, double sign)
+{
+    double beyond[LANES] = {0};
+    for (size_t i = 0; i < count; i += LANES) {
+        const size_t width = count - i < LANES ? count - i : LANES;
+        for (size_t l = 0; l < width; l++)
+            beyond[l] += sign * x[i + l] >= limit ? 1 : 0;
+    }
+    for (size_t l = 1; l < LANES; l++)
+        beyond[0] += beyond[l];
+    return (size_t)beyond[0];
+}
+
+/* Where coarse values make many samples extreme, all of them known: by whole arrays.
+ * @return false: nothing was counted */
+static bool add_known(imki_ends *e, size_t place, size_t count, const double *samples, double sign)
+{
+    enum { FEW = 32 };
+    size_t equal[IMKI_SCREEN_ENDS], sum = 0;
+    const bool full = e->distinct == IMKI_SCREEN_ENDS;
+    const double limit = full ? e->value[IMKI_SCREEN_ENDS - 1] : -HUGE_VAL;
+    const size_t within = count_beyond(count, samples, limit, sign);
+    if (within < count / FEW)
+        return false;
+    for (size_t k = 0; k < e->distinct; k++)
+        sum += equal[k] = count_equal(count, samples, sign * e->value[k]);
+    if (sum != within)
+        return false;
+    for (size_t k = 0; k < e->distinct; k++) {
+        const double value = sign * e->value[k];
+        if (equal[k] == 0)
+            continue;
+        e->count[k].count += equal[k];
+        if (k == 0) /* the runs of others are of no interest, and no other will be the first */
+            e->count[0].runs += count_runs(count, samples, value) -
+                                (samples[0] == value && e->last[0] + 1 == place);
+        size_t last = count - 1;
+        while (samples[last] != value)
+            last--;
+        e->last[k] = place + last;
+    }
+    return true;
+}
+
 void imki_ends_add(imki_ends *e, size_t place, size_t count, const double *samples, double sign)
 {
+    if (count == 0 || add_known(e, place, count, samples, sign))
+        return;
     for (size_t i = 0; i < count; i++) {
         const double value = sign * samples[i];
         const bool full = e->distinct == IMKI_SCREEN_ENDS;

@@ -39,8 +39,8 @@ typedef struct imki_levels {
 typedef struct imki_ends {
     size_t distinct;
     double value[IMKI_SCREEN_ENDS];
-    imk_screen_count count[IMKI_SCREEN_ENDS];
-    size_t last[IMKI_SCREEN_ENDS]; /* place of the last one */
+    imk_screen_count count[IMKI_SCREEN_ENDS]; /* runs: of the first one only */
+    size_t last[IMKI_SCREEN_ENDS];            /* place of the last one */
 } imki_ends;
 
 /* Fast variance of batches of blocks: sums over the whole batches, and the batch being filled. */
@@ -58,9 +58,11 @@ typedef struct imki_cycles {
     double differences, straight, straight_by_chance; /* second differences, those that vanish */
 } imki_cycles;
 
-/* Zeros among the noise, and values beside them, in chunks of fine steps and of coarse ones. */
+/* Zeros among the noise of some chunks, and values beside them, in chunks of fine steps and of
+ * coarse ones. */
 typedef struct imki_zeros {
-    double fine, due, variance; /* zeros, how many are due, variance of their difference */
+    double samples;                    /* of these chunks */
+    double fine, due, variance;        /* zeros, how many are due, variance of their difference */
     double coarse, above[2], below[2]; /* zeros, and values one and two steps away */
 } imki_zeros;
 
@@ -83,7 +85,8 @@ struct imk_screener {
     bool marked;  /* is any sample of the chunk? */
     double *room; /* all of these arrays, for other use at the end */
     size_t room_count;
-    size_t count[2], chunk; /* samples in raw[]; number of chunks decided */
+    double lowest[2], highest[2]; /* of raw[] */
+    size_t count[2], chunk;       /* samples in raw[]; number of chunks decided */
     bool thermal;
     /* Repeats: shares of stretches of 512 samples, the last ones in turn. */
     double share[IMKI_SCREEN_SHARES];
@@ -116,8 +119,8 @@ void imki_screen_flush(imk_screener *screener);
 
 /* screener_moments.c */
 void imki_screen_extremes(size_t count, const double *x, double *low, double *high);
-/* Mean and deviation of a new chunk join those before. */
-void imki_screen_moments(imk_screener *s, size_t count, const double *samples, size_t missing);
+/* Extremes of a new chunk, raw[at]; its mean and deviation join those before. */
+void imki_screen_moments(imk_screener *s, int at, size_t missing);
 /* Variance within blocks of 32 samples: in batches; and by the median. */
 void imki_screen_variances(imk_screener *s);
 void imki_screen_core(imk_screener *s);
@@ -136,7 +139,7 @@ void imki_screen_lost(imk_screener *s);
 /* Count zeros among the noise of the chunk. */
 void imki_screen_zeros(imk_screener *s);
 /* Share of the samples by which zeros are more than due; 0: they are not. */
-double imki_zeros_excess(const imki_zeros *zeros, double present);
+double imki_zeros_excess(const imki_zeros *zeros);
 
 /* screener_outliers.c */
 void imki_screen_outliers(imk_screener *s);

@@ -60,14 +60,16 @@ static void sum_moments(size_t count, const double *x, double scale, double orig
 
 /* Mean and root sum of squares about it, joined with those before [CHAN1983, (2.1)]; scaled, so
  * that squares neither overflow nor vanish. */
-void imki_screen_moments(imk_screener *s, size_t count, const double *samples, size_t missing)
+void imki_screen_moments(imk_screener *s, int at, size_t missing)
 {
-    const double present = (double)(count - missing);
-    double low, high, sum, squares;
+    const size_t count = s->count[at];
+    const double present = (double)(count - missing), *samples = s->raw[at];
+    double sum, squares;
     int exponent;
+    imki_screen_extremes(count, samples, &s->lowest[at], &s->highest[at]);
     if (missing == count)
         return;
-    imki_screen_extremes(count, samples, &low, &high);
+    const double low = s->lowest[at], high = s->highest[at];
     frexp(fmax(fabs(low), fabs(high)), &exponent);
     const double scale = ldexp(1, exponent < -1000 ? 1000 : -exponent), origin = low * scale;
     sum_moments(count, samples, scale, origin, &sum, &squares);

@@ -21,7 +21,7 @@
 
 #include <math.h>
 
-enum { STEPS = 3, REPEATS = 3, FINE = 3, COUNTED_MIN = 25 };
+enum { EVERY = 8, STEPS = 3, REPEATS = 3, FINE = 3, COUNTED_MIN = 25 };
 
 static const double apart = 0.25; /* of the range: so far from zero are the other samples */
 /* Zeros among the noise are too many when they are more than due by these. */
@@ -66,8 +66,8 @@ static void mark_lost(imk_screener *s)
 void imki_screen_lost(imk_screener *s)
 {
     double low, high;
-    if (count_zeros(s->count[0], s->raw[0]) == 0 ||
-        !extremes_without_zeros(s->count[0], s->raw[0], &low, &high))
+    const bool at_end = s->lowest[0] == 0 || s->highest[0] == 0;
+    if (!at_end || !extremes_without_zeros(s->count[0], s->raw[0], &low, &high))
         return;
     if (fmax(low, -high) > apart * (high - low) + STEPS * s->step)
         mark_lost(s);
@@ -101,6 +101,9 @@ static size_t most_frequent(imk_screener *s)
 void imki_screen_zeros(imk_screener *s)
 {
     imki_zeros *z = &s->zeros;
+    if (s->chunk % EVERY != 0)
+        return;
+    z->samples += (double)s->count[0];
     const double zeros = (double)count_zeros(s->count[0], s->clean), step = s->step;
     if (zeros == 0 || !(s->scale > 0) || step > coarsest * s->scale)
         return;
@@ -125,7 +128,7 @@ void imki_screen_zeros(imk_screener *s)
     z->fine += zeros;
 }
 
-double imki_zeros_excess(const imki_zeros *z, double present)
+double imki_zeros_excess(const imki_zeros *z)
 {
     const double least = fmin(fmin(z->above[0], z->above[1]), fmin(z->below[0], z->below[1]));
     double due = z->due, variance = z->variance, zeros = z->fine;
@@ -141,8 +144,8 @@ double imki_zeros_excess(const imki_zeros *z, double present)
         zeros += z->coarse;
     }
     const double excess = zeros - due;
-    return excess > least_share * present && zeros > least_factor * due &&
+    return excess > least_share * z->samples && zeros > least_factor * due &&
                    excess > deviations * sqrt(variance)
-               ? excess / present
+               ? excess / z->samples
                : 0;
 }
