@@ -16,8 +16,9 @@
  * addition is the likelier cause: the noise of an axis has been measured within the holds.
  *
  * Turns between rests have a factor too. An excess of accelerometers may look like one of turns,
- * because rests and turns disagree about the same attitudes; so each form of the accelerometers
- * that is common to the axes is also tried with turns as stated.
+ * because rests and turns disagree about the same attitudes; so where turns seem far worse than
+ * stated, each form of the accelerometers that is common to the axes is also tried with turns as
+ * stated.
  *
  * Few residuals do not tell which form is right. So the values are those of the chosen form, and
  * the intervals those that all forms together hold, each weighted by exp(-criterion/2)
@@ -32,8 +33,9 @@
 
 /* A factor that is chosen has so many degrees of freedom, one of an axis a little more. */
 static const double least_freedom = 3.0, least_axis_freedom = 4.0, least_added_freedom = 1.0;
-/* Errors of poses are looked for where the factor is above this, or that of turns above 1. */
-static const double least_excess = 0.9;
+/* Errors of poses are looked for where the factor is above this, or that of turns above what turns
+ * as stated seldom have by chance. */
+static const double least_excess = 0.9, least_turn_excess = 1.5;
 /* Sigmas whose root mean square is less than this over their harmonic mean are alike. */
 static const double least_unlike = 1.1;
 /* Axes that differ by more than their noise within holds says are not usual: -2 ln of 0.14. Nor is
@@ -120,7 +122,7 @@ static int form_bits(const imki_estimator *e, int sensor)
 /* The forms to be tried, by the solution with one factor a group; the first is this. */
 static int list_forms(const imki_estimator *e, int sensor, int list[FORMS])
 {
-    const bool of_turns = sensor == IMK_ACCEL && e->factor[IMK_GROUP_TURN] > 1.0;
+    const bool of_turns = sensor == IMK_ACCEL && e->factor[IMK_GROUP_TURN] > least_turn_excess;
     const bool excess = of_turns || e->factor[imki_part_of(e, sensor, 0)] > least_excess;
     double unlike;
     int count = 0;
