@@ -14,7 +14,7 @@ for test in $(find tests/{base,model,noise,motion,simulate,compensate,navigate} 
         grep -qE '_(scalar|portable)\.c' || names+="|$(basename -s .c "$test")"
 done
 export IMUKIT_TEST_DRAWS=${IMUKIT_TEST_DRAWS:-1000000}
-export IMUKIT_TEST_RUNS=${IMUKIT_TEST_RUNS:-8}
+export IMUKIT_TEST_RUNS=${IMUKIT_TEST_RUNS:-20}
 for isa in scalar avx2; do
     echo "IMUKIT_ISA=$isa"
     IMUKIT_ISA=$isa ctest --test-dir "$build" --output-on-failure -j "$(nproc)" --no-tests=error \

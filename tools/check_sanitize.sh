@@ -11,5 +11,5 @@ export UBSAN_OPTIONS=print_stacktrace=1
 # Tests that draw hundreds of millions of numbers honour this; the sanitizers need no more.
 export IMUKIT_TEST_DRAWS=${IMUKIT_TEST_DRAWS:-1000000}
 # The repetitions of statistical tests are divided by this.
-export IMUKIT_TEST_RUNS=${IMUKIT_TEST_RUNS:-8}
+export IMUKIT_TEST_RUNS=${IMUKIT_TEST_RUNS:-20}
 ctest --preset sanitize -j "$(nproc)" --no-tests=error

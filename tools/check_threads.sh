@@ -14,5 +14,5 @@ cmake --preset threads -DIMUKIT_COMMAND=OFF -DIMUKIT_TEST_FILTER="$names\\." \
     -DIMUKIT_FILE_FILTER="($files)" >/dev/null
 cmake --build --preset threads -j "$(nproc)" --target imukit-tests >/dev/null
 export IMUKIT_TEST_DRAWS=${IMUKIT_TEST_DRAWS:-1000000}
-export IMUKIT_TEST_RUNS=${IMUKIT_TEST_RUNS:-8}
+export IMUKIT_TEST_RUNS=${IMUKIT_TEST_RUNS:-20}
 ctest --preset threads -j "$(nproc)" --no-tests=error -R "^$names\$"

@@ -191,6 +191,8 @@ static void test_offset(void **state)
     (void)state;
     static const double samples[] = {0.0, 12.4, -250.7, 77.0};
     for (size_t i = 0; i < 4; i++) {
+        if (check_skips(i, 2))
+            continue;
         start(IMK_PROCEDURE_RATE_TABLE, session_rate_steps);
         session_log(shared, 10 + i, 0.0);
         shift_log(shared, samples[i]);

@@ -295,6 +295,8 @@ static void test_strong_filters(void **state)
     (void)state;
     const imk_low_pass filters[] = {{5, 0.7}, {10, 0.7}, {20, 0.7}, {5, 0}, {10, 0}};
     for (size_t i = 0; i < sizeof filters / sizeof filters[0]; i++) {
+        if (check_skips(i, 3)) /* one of each order stays */
+            continue;
         const truth t = {.white = 1.0, .bias_instability = 0.4, .filter = filters[i]};
         const imk_identification r = identify_truth(&t, 200000, 0.01, 1, 20 + i);
         CHECK_RELATIVE(r.filter.bandwidth, filters[i].bandwidth, 0.05);
