@@ -256,8 +256,7 @@ static const imki_concern concerns[] = {
      "the readings follow the temperature; kept"},
     {0, find_trend_left, 0, IMK_FINDING_WARNING, "trend_left",
      "a warm-up or an effect of temperature is in this log, and these terms may be what is left of "
-     "it; "
-     "record again at a constant temperature, and switch the sensor on earlier",
+     "it; record again at a constant temperature, and switch the sensor on earlier",
      NULL},
     {0, find_steps, 0, IMK_FINDING_WARNING, "steps",
      "the level jumps: the sensor was touched, or its range or filter was changed; the slow terms "
@@ -277,13 +276,11 @@ static const imki_concern concerns[] = {
      NULL},
     {0, find_walk, 0, IMK_FINDING_NOTE, "walk_or_drift",
      "jumps of the level by a few times the bias instability, or a drift with the temperature if "
-     "the "
-     "log does not state it, look the same; this record cannot tell",
+     "the log does not state it, look the same; this record cannot tell",
      NULL},
     {0, find_dropped, 0, IMK_FINDING_WARNING, "dropped",
      "the samples far from the level are missing, as if a program had dropped what is out of a "
-     "range; "
-     "the white noise is too low; log every sample, or widen the range",
+     "range; the white noise is too low; log every sample, or widen the range",
      NULL},
 };
 
