@@ -82,6 +82,16 @@ static void add_of_gravity(const imk_calibrate_log *b, imki_text *list)
     }
 }
 
+/* Where each attitude was taken once, the solution explains its readings whatever they are. */
+static void add_of_single_attitudes(const imk_calibrate_log *b, imki_text *list)
+{
+    const double least_freedom = 3;
+    if (b->result && is_estimated(b, 1) &&
+        b->result->group[IMK_GROUP_ACCEL].degrees_of_freedom < least_freedom)
+        add_item(list, "errors of the accelerometers that stay for a whole attitude, such as a bias "
+                       "that drifts from one to the next (take each attitude again)");
+}
+
 /* The sign of the dip tells which way round a magnetometer is, where it is known. */
 static void add_of_magnetometer(const imk_calibrate_log *b, imki_text *list)
 {
@@ -99,6 +109,7 @@ void imki_untestable(const imk_calibrate_log *b, imk_verdict *v)
     imki_text list = {0};
     add_of_gyros(b, &list);
     add_of_gravity(b, &list);
+    add_of_single_attitudes(b, &list);
     add_of_magnetometer(b, &list);
     if (list.bytes)
         imki_verdict_add(v, IMK_FINDING_NOTE, "not_testable", "Cannot be seen in %s: %s",
