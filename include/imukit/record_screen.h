@@ -75,6 +75,10 @@ typedef struct imk_screen {
     double clipped_gain;   /**< how far a slow change, smaller than the noise, shows: the share of
                               samples between these values */
     double clipped_misfit; /**< relative difference of the deviation from that of such noise */
+    /** The values end abruptly at `end_low` or `end_high`: more of them are near it than noise
+     *  has, but not on it. Where the noise is not white, tones and resonances do so too. */
+    bool ends_low, ends_high;
+    double end_low, end_high;
     bool interpolated; /**< the noise is stronger and weaker in a cycle of some samples, as between
                           the samples of a slower sensor */
     double sensor_rate[2]; /**< its rate over that of the log, 0 if the noise alternates from row to

@@ -254,6 +254,10 @@ void imki_screen_conclude(imk_screener *s)
     f->lost.first = f->lost.count > 0 ? f->lost.first : f->n;
     f->zeros = imki_zeros_excess(&s->zeros);
     find_saturation(s);
+    f->ends_low = imki_edge_is_abrupt(&s->lower, f->noise, f->resolution);
+    f->ends_high = imki_edge_is_abrupt(&s->upper, f->noise, f->resolution);
+    f->end_low = s->lower.count > 0 ? -s->lower.largest[0] : 0;
+    f->end_high = s->upper.count > 0 ? s->upper.largest[0] : 0;
     find_tails(s);
     f->interpolated = imki_cycles_find(&s->cycles, 0.1 * s->settings.significance, f->sensor_rate);
     f->steps.first = f->possible_step_place = f->n;

@@ -18,7 +18,8 @@ enum {
     MARGIN = 2 * IMKI_SCREEN_REACH + 2,
     RESOLVED_EVERY = 8, /* chunks whose values are looked at for a step */
     RESOLVED_OF = 2048, /* samples of them */
-    CORE_EVERY = 4      /* chunks whose median deviation is taken */
+    CORE_EVERY = 4,     /* chunks whose median deviation is taken */
+    EDGES_EVERY = 2     /* chunks whose largest values are looked at */
 };
 
 imk_screen_settings imk_screen_default(void)
@@ -86,6 +87,8 @@ imk_status imk_screener_begin(const imk_screen_settings *settings, unsigned what
     s->last = s->run_value = (double)NAN;
     s->found.outliers.first = s->found.stuck.first = s->found.missing.first = s->found.lost.first =
         SIZE_MAX;
+    imki_edges_begin(&s->upper);
+    imki_edges_begin(&s->lower);
     imki_levels_begin(&s->levels);
     imki_cycles_begin(&s->cycles);
     *screener = s;
@@ -196,6 +199,8 @@ static void decide(imk_screener *s)
         imki_screen_core(s);
     imki_screen_zeros(s);
     add_ends(s);
+    if (s->chunk % EDGES_EVERY == 0)
+        imki_edges_add(&s->upper, &s->lower, s->count[0], s->clean);
     imki_cycles_add(&s->cycles, s->chunk, s->count[0], s->clean, s->step, s->value);
     imki_levels_add(&s->levels, s->count[0], s->clean, s->thermal ? s->warm[0] : NULL);
     s->chunk++;

@@ -43,6 +43,13 @@ typedef struct imki_ends {
     size_t last[IMKI_SCREEN_ENDS];            /* place of the last one */
 } imki_ends;
 
+/* The largest values of pieces of the record, in order. */
+enum { IMKI_EDGE_PIECES = 64 };
+typedef struct imki_edges {
+    size_t count;
+    double largest[IMKI_EDGE_PIECES];
+} imki_edges;
+
 /* Fast variance of batches of blocks: sums over the whole batches, and the batch being filled. */
 typedef struct imki_batches {
     double blocks, sum; /* of the batch being filled */
@@ -108,6 +115,7 @@ struct imk_screener {
     imki_batches batches[2][IMKI_SCREEN_BATCHES]; /* with outliers, and without */
     double shift, norm, mean; /* of the samples: Chan's update of mean and root sum of squares */
     imki_ends high, low;      /* low: of the negatives */
+    imki_edges upper, lower;  /* lower: of the negatives */
     imki_levels levels;
     imki_cycles cycles;
     imki_zeros zeros;
@@ -132,6 +140,14 @@ void imki_screen_repeats(imk_screener *s, int at, bool whole);
 size_t imki_screen_stuck_limit(const imk_screener *s);
 /* Mark stuck samples of raw[0]; raw[1] tells how the last run goes on. */
 void imki_screen_stuck(imk_screener *s);
+
+/* screener_edges.c */
+void imki_edges_begin(imki_edges *edges);
+/* @param low  of the negatives */
+void imki_edges_add(imki_edges *high, imki_edges *low, size_t count, const double *samples);
+/* Are there more samples near the largest than noise has?
+ * @param deviation  of the fast noise @param step  between values; 0: none */
+bool imki_edge_is_abrupt(const imki_edges *edges, double deviation, double step);
 
 /* screener_zeros.c */
 /* Mark zeros that lie outside the other samples of raw[0]. */

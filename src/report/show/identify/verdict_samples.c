@@ -79,6 +79,20 @@ static bool find_saturated(const imk_identify_log *log, size_t channel, imki_tex
     return s->saturated.count > 0;
 }
 
+/* Tones have many largest values; resonances and filters may. */
+static bool find_ends(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    const imk_identification *r = &log->result[channel];
+    const imk_unit unit = imki_concern_unit(log, channel, s->end_high - s->end_low);
+    if (s->ends_low)
+        imki_text_add(detail, "above %.4g %s", s->end_low / unit.scale, unit.text);
+    if (s->ends_high)
+        imki_text_add(detail, "%sbelow %.4g %s", s->ends_low ? " and " : "",
+                      s->end_high / unit.scale, unit.text);
+    return (s->ends_low || s->ends_high) && s->saturated.count == 0 && r->sinusoid_count == 0;
+}
+
 /* Held samples have a cycle, too, and are told by the rows. */
 static bool find_interpolated(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
@@ -239,6 +253,11 @@ static const imki_concern concerns[] = {
      "samples at the end of the range; the values are those of normal noise before it was cut off "
      "there, and their intervals allow for that assumption",
      "samples at the end of the range, kept; the values are too low by these factors"},
+    {0, find_ends, 0, IMK_FINDING_WARNING, "ends",
+     "all samples are on one side of a value near which there are many, as where readings are "
+     "limited, folded back, wrapped around, rectified, or dropped and replaced by their value; the "
+     "white noise is not the sensor's; widen the range, and log the samples as they are",
+     NULL},
     {0, find_interpolated, 0, IMK_FINDING_WARNING, "interpolated",
      "the log looks interpolated: its noise is stronger and weaker in a cycle, as between the "
      "samples of a slower sensor, if no interference modulates it; interpolation takes away noise "

@@ -108,7 +108,7 @@ static bool find_undetermined(const imk_identify_log *log, size_t channel, imki_
  * large. */
 static bool find_behind_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
-    const double few = 10, matters = 0.1;
+    const double few = 10, many = 1000, matters = 0.1; /* many: no sensor is without white noise */
     const imk_identification *r = &log->result[channel];
     const imk_estimate *n = &r->term[IMK_NOISE_WHITE];
     const double white = n->present ? n->value : 0;
@@ -120,7 +120,8 @@ static bool find_behind_filter(const imk_identify_log *log, size_t channel, imki
         const double time = r->gauss_markov[i].correlation_time.value;
         const double behind = 2 * sigma->value * sigma->value * time;
         const bool certain = n->present && sigma->lower > 0;
-        if (time < few * log->record.dt && !certain && behind > matters * white * white) {
+        const double limit = (n->present ? few : many) * log->record.dt;
+        if (time < limit && !certain && behind > matters * white * white) {
             imki_text_add(detail, "%.3g %s behind a filter of %.2g Hz",
                           sqrt(behind + white * white) / unit.scale, unit.text,
                           1 / (6.283185307179586 * time));
@@ -152,7 +153,7 @@ static const imki_concern concerns[] = {
      "noise and quantization are unreliable; log with more digits or a smaller range",
      NULL},
     {0, find_behind_filter, 0, IMK_FINDING_WARNING, "behind_filter",
-     "a Gauss-Markov term of a few samples looks like white noise behind a low-pass filter; if the "
+     "a Gauss-Markov term of a few samples, or one without white noise, looks like white noise behind a low-pass filter; if the "
      "sensor or its driver filters, white noise is the first value, and the term is the filter; "
      "log "
      "unfiltered samples, or several times as many in a second",

@@ -23,6 +23,8 @@ static const struct words {
      "An output step coarser than the noise: %s."},
     {"saturated", "samples stick at the end of the range in %s",
      "Samples at an extreme value: %s."},
+    {"ends", "the values of %s end abruptly, as if they were limited",
+     "Values that end abruptly: %s."},
     {"frozen", "samples are repeated in %s, so that the true rate is lower", "Repeats: %s."},
     {"interpolated", "%s look interpolated from a slower sensor, so that noise is missing",
      "Interpolated from a slower sensor: %s."},
