@@ -58,8 +58,10 @@ typedef struct imk_screen {
     double noise_scatter;  /**< relative standard deviation of the variance within 32 samples over
                               the record, by its scatter between batches, without
                             outliers that are none of the noise; 0: too short */
-    imk_screen_count lost; /**< zeros outside the noise, as loggers write them for lost rows; taken
-                              out with the stuck samples, but none of them */
+    imk_screen_count lost; /**< zeros, or another value that comes again and again, outside the
+                              noise, as loggers write them for lost rows; taken out with the stuck
+                              samples, but none of them */
+    double lost_value;     /**< this value, the last one found */
     double zeros; /**< share of the samples by which zeros among the noise are more than their
                      neighbours tell: small values were put to zero, or all were cut off toward it;
                      0: they are not */

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Zeros that are no measurements.
+/* Zeros, and other values, that are no measurements.
  *
- * Loggers write 0 where a row was lost. Such zeros lie outside the other samples of their chunk:
- * these are all on one side of zero, which is farther from them than a quarter of their range (6
- * standard deviations from their mean, for a range of 8) and three steps. They are taken out like
- * stuck samples.
+ * Loggers write 0, -32768, 999 or 1e9 where a row was lost. Such zeros lie outside the other
+ * samples of their chunk: these are all on one side of zero, which is farther from them than a
+ * quarter of their range (6 standard deviations from their mean, for a range of 8) and three steps.
+ * Another value must come twice in the chunk, to the digit, and be twice the range of the others
+ * away. They are taken out like stuck samples.
  *
  * Zeros among the noise may be too many: a driver that puts small values to zero, or cuts values
  * off toward zero. How many are due, the values beside zero tell. Where the step q between values
@@ -21,9 +22,10 @@
 
 #include <math.h>
 
-enum { EVERY = 8, STEPS = 3, REPEATS = 3, FINE = 3, COUNTED_MIN = 25 };
+enum { EVERY = 8, STEPS = 3, FAR = 30, REPEATS = 3, FINE = 3, COUNTED_MIN = 25 };
 
-static const double apart = 0.25; /* of the range: so far from zero are the other samples */
+/* Of the range of the other samples: so far are they from zero, and from another value. */
+static const double apart = 0.25, far_apart = 2;
 /* Zeros among the noise are too many when they are more than due by these. */
 static const double coarsest = 1.4;
 static const double least_share = 0.015, least_factor = 1.2, deviations = 6;
@@ -36,41 +38,56 @@ static size_t count_zeros(size_t count, const double *x)
     return zeros;
 }
 
-/* Lowest and highest of the samples that are not zero. */
-static bool extremes_without_zeros(size_t count, const double *x, double *low, double *high)
+/* Lowest and highest of the samples that are not of a value; how many are. */
+static size_t extremes_without(size_t count, const double *x, double value, double *low,
+                               double *high)
 {
+    size_t equal = 0;
     *low = HUGE_VAL;
     *high = -HUGE_VAL;
     for (size_t i = 0; i < count; i++) {
-        *low = x[i] != 0 && x[i] < *low ? x[i] : *low;
-        *high = x[i] != 0 && x[i] > *high ? x[i] : *high;
+        equal += x[i] == value;
+        *low = x[i] != value && x[i] < *low ? x[i] : *low;
+        *high = x[i] != value && x[i] > *high ? x[i] : *high;
     }
-    return *low <= *high;
+    return equal;
 }
 
-static void mark_lost(imk_screener *s)
+static void mark_lost(imk_screener *s, double value)
 {
     imk_screen_count *lost = &s->found.lost;
     const double *x = s->raw[0];
     for (size_t i = 0; i < s->count[0]; i++) {
-        if (x[i] != 0 || s->mark[i])
+        if (x[i] != value || s->mark[i])
             continue;
         const size_t place = s->chunk * IMKI_SCREEN_CHUNK + i;
         lost->first = lost->count++ == 0 ? place : lost->first;
-        lost->runs += i == 0 || x[i - 1] != 0;
+        lost->runs += i == 0 || x[i - 1] != value;
         s->mark[i] |= IMKI_MARK_STUCK;
         s->marked = true;
     }
+    s->found.lost_value = value;
+}
+
+/* Does a value at an end of the chunk stand for lost rows? */
+static bool stands_for_lost(const imk_screener *s, double value)
+{
+    double low, high;
+    const size_t equal = extremes_without(s->count[0], s->raw[0], value, &low, &high);
+    if (!(low <= high) || low == high)
+        return false;
+    const double gap = fmax(low - value, value - high), range = high - low;
+    return gap > (value == 0 ? apart : far_apart) * range + STEPS * s->step &&
+           (value == 0 || equal > 1);
 }
 
 void imki_screen_lost(imk_screener *s)
 {
-    double low, high;
-    const bool at_end = s->lowest[0] == 0 || s->highest[0] == 0;
-    if (!at_end || !extremes_without_zeros(s->count[0], s->raw[0], &low, &high))
-        return;
-    if (fmax(low, -high) > apart * (high - low) + STEPS * s->step)
-        mark_lost(s);
+    const double ends[2] = {s->lowest[0], s->highest[0]};
+    const bool far = !(s->scale > 0) || ends[1] - ends[0] > FAR * s->scale;
+    for (int k = 0; k < 2; k++)
+        if ((ends[k] == 0 || far) && stands_for_lost(s, ends[k]))
+            mark_lost(s, ends[k]);
 }
 
 /* Samples within two limits that are not zero. */

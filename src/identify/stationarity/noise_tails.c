@@ -7,7 +7,10 @@
  * shows w^2 of it. Behind an output filter an octave is taken that is slower than the filter.
  *
  * Bursts make the strength vary from column to column by more than independent differences do. The
- * squares of a resonance are correlated over Q/(2 pi f), which is allowed for. */
+ * squares of a resonance are correlated over Q/(2 pi f), which is allowed for. Bursts shorter than
+ * a column leave heavy tails at averaging times at which independent samples of any distribution
+ * would have become Gaussian: differences of Gaussian noise have no excess kurtosis, whatever its
+ * spectrum. */
 #include "imukit/distributions.h"
 #include "noise_map_internal.h"
 
@@ -96,12 +99,46 @@ static void test_scatter(const imk_noise_map *map, const imk_noise_changes_setti
     }
 }
 
+/* Excess kurtosis of all differences of an octave; its standard deviation for Gaussian noise. */
+static double whole_kurtosis(const imk_noise_map *map, size_t octave, double *sigma)
+{
+    const imk_noise_cell all = imki_noise_cells(map, octave, 0, IMK_NOISE_MAP_BLOCKS);
+    *sigma = all.count > 0 ? sqrt(24 / all.count) : HUGE_VAL;
+    return all.square > 0 ? all.fourth * all.count / (all.square * all.square) - 3 : 0;
+}
+
+static void test_clusters(const imk_noise_map *map, const imk_noise_changes_settings *settings,
+                          const imk_identification *identified, const imki_noise_shares *shares,
+                          imk_noise_changes *r)
+{
+    enum { FAR = 4 }; /* octaves, over which the kurtosis of independent samples falls to 1/16 */
+    static const double least = 0.3, deviations = 6, share_least = 0.7, tones_most = 0.02;
+    const size_t first = white_octave(identified, settings->dt);
+    double sigma;
+    if (r->changed != 0 || r->bursts || !r->heavy_tails)
+        return;
+    const double samples = whole_kurtosis(map, first, &sigma);
+    for (size_t j = first + FAR; j < shares->octaves; j++) {
+        const double total = imki_noise_total(shares, j), excess = whole_kurtosis(map, j, &sigma);
+        const double independent = samples / (double)((size_t)1 << (j - first));
+        if (!(r->tested >> j & 1) || shares->white[j] < share_least * total ||
+            shares->tones[j] > tones_most * total ||
+            excess < fmax(least, 2 * independent + deviations * sigma) ||
+            1 + 0.5 * excess < r->scatter)
+            continue;
+        r->scatter = 1 + 0.5 * excess; /* a mean square scatters by (2 + excess)/count */
+        r->scatter_octave = j;
+        r->bursts = true;
+    }
+}
+
 void imki_noise_tails(const imk_noise_map *map, const imk_noise_changes_settings *settings,
                       const imk_identification *identified, const imki_noise_shares *shares,
                       imk_noise_changes *result)
 {
     test_tails(map, settings, identified, shares, result);
     test_scatter(map, settings, identified, shares, result);
+    test_clusters(map, settings, identified, shares, result);
 }
 
 void imk_noise_changes_widen(const imk_noise_changes *changes, size_t n,

@@ -69,6 +69,29 @@ static void test_lost(void **state)
     }
 }
 
+/* So are other values that stand for them; a single one is an outlier. */
+static void test_code(void **state)
+{
+    (void)state;
+    static const double code[] = {-32768, 999, 1e9, 40};
+    for (size_t k = 0; k < 4; k++)
+        for (size_t every = 97; every < 3000; every += 1400) {
+            size_t written = 0;
+            make(k, 3, k % 2 ? 0.01 : 0);
+            for (size_t i = 50; i < N; i += every, written++)
+                rate[i] = code[k];
+            const imk_screen found = screen();
+            assert_int_equal(found.lost.count, written);
+            assert_true(found.lost_value == code[k]);
+            assert_int_equal(found.outliers.count, 0);
+            assert_false(found.heavy_tails);
+            make(k, 3, 0);
+            rate[1000] = code[k];
+            assert_int_equal(screen().lost.count, 0);
+            assert_int_equal(screen().outliers.count, 1);
+        }
+}
+
 /* Values below a limit are put to zero; all are cut off toward zero. */
 static void test_too_many(void **state)
 {
@@ -120,6 +143,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_lost),
+        cmocka_unit_test(test_code),
         cmocka_unit_test(test_too_many),
         cmocka_unit_test(test_sound),
     };

@@ -214,6 +214,26 @@ static void test_bursts(void **state)
     assert_true(changes.scatter > 1.5);
 }
 
+/* Bursts that come several times in each column of the map, which all have the same strength; heavy
+ * tails of independent samples are none. */
+static void test_short_bursts(void **state)
+{
+    (void)state;
+    const imk_identification model = model_of(1.15, 0.3, 0);
+    for (uint32_t run = 0; run < 8; run++) {
+        const bool bursts = run % 2;
+        make(300 + run, 0.3, 0);
+        for (size_t i = 0; i < N; i++) {
+            const size_t turn = bursts ? i / 60 : i;
+            white[i] *= turn * 2654435761u % 4294967296u < 430000000u ? 2 : 1;
+        }
+        find(&model);
+        assert_int_equal(changes.changed, 0);
+        assert_true(changes.heavy_tails);
+        assert_int_equal(changes.bursts, bursts);
+    }
+}
+
 /* A tenth of the samples at twice the strength: excess kurtosis 3 (0.9 + 1.6)/(0.9 + 0.4)^2 - 3.
  * The estimate, of N/2 differences of two samples, has a standard deviation of 2 sqrt(24/(N/2)) =
  * 0.054 in Gaussian noise, here twice that. */
@@ -268,7 +288,7 @@ int main(void)
         cmocka_unit_test(test_tenth),   cmocka_unit_test(test_growth),
         cmocka_unit_test(test_flicker), cmocka_unit_test(test_weak_flicker),
         cmocka_unit_test(test_band),    cmocka_unit_test(test_tone),
-        cmocka_unit_test(test_bursts),  cmocka_unit_test(test_tails),
-        cmocka_unit_test(test_refusals)};
+        cmocka_unit_test(test_bursts),  cmocka_unit_test(test_short_bursts),
+        cmocka_unit_test(test_tails),   cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

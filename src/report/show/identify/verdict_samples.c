@@ -60,7 +60,9 @@ static bool find_dead(const imk_identify_log *log, size_t channel, imki_text *de
 static bool find_lost(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_screen *s = &log->screen[channel];
-    imki_text_add(detail, "%zu of %zu", s->lost.count, s->n);
+    const imk_unit unit = imk_channel_plain_unit(imk_even_record_column(&log->record, channel));
+    imki_text_add(detail, "%zu of %zu samples are %.6g %s", s->lost.count, s->n,
+                  s->lost_value / unit.scale, unit.text);
     return s->lost.count > 0;
 }
 
@@ -242,8 +244,8 @@ static const imki_concern concerns[] = {
      "look for the cause, and record again",
      NULL},
     {0, find_lost, IMK_SCREEN_STUCK, IMK_FINDING_NOTE, "lost",
-     "0 far outside the noise, as a logger writes it for a row that was lost; left out",
-     "0 far outside the noise, as a logger writes it for a row that was lost; kept"},
+     "one value far outside the noise, as a logger writes it for a row that was lost; left out",
+     "one value far outside the noise, as a logger writes it for a row that was lost; kept"},
     {0, find_zeros, 0, IMK_FINDING_WARNING, "zeros",
      "so many zeros are more than the values beside zero tell: lost rows are written as 0, or the "
      "driver has a dead band or cuts values off toward zero instead of rounding them; the white "
@@ -314,7 +316,7 @@ static void assess_moves(imk_verdict *v, const imk_identify_log *log)
         return;
     imki_verdict_add(v, IMK_FINDING_FAILURE, "moved",
                      "the sensor was moved, or had not settled, between %.4g s and %.4g s; the "
-                     "longest part at rest is read by --after %gs --before %gs.",
+                     "longest part without this is read by --after %gs --before %gs.",
                      m.first, m.end, m.still_first, m.still_end);
     imki_verdict_about(v, &log->record, channels);
 }

@@ -106,6 +106,26 @@ static bool find_undetermined(const imk_identify_log *log, size_t channel, imki_
  * with 2 sigma^2 T = N^2. A sensor without white noise, but with such a term of a few samples, is
  * more likely one with a filter; so is one with a term that is not certain and a tenth of N^2
  * large. */
+/* Slow fluctuations that are larger than those of any sensor at rest: 0.3 deg/s are ten times the
+ * bias instability of the poorest gyros, 5 mg that of accelerometers. */
+static bool find_unrest(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    const imk_log_column *column = imk_even_record_column(&log->record, channel);
+    const imk_channel_kind kind = imk_channel_kind_of(column);
+    const double limit = kind == IMK_CHANNEL_GYRO ? 0.005 : kind == IMK_CHANNEL_ACCEL ? 0.05 : 0;
+    for (int i = 0; i < r->gauss_markov_count && limit > 0; i++) {
+        const double sigma = r->gauss_markov[i].sigma.value;
+        const double time = r->gauss_markov[i].correlation_time.value;
+        const imk_unit unit = imki_concern_unit(log, channel, sigma);
+        if (sigma > limit && time > 0.1 && time > 10 * log->record.dt) {
+            imki_text_add(detail, "%.3g %s over %.2g s", sigma / unit.scale, unit.text, time);
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool find_behind_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const double few = 10, many = 1000, matters = 0.1; /* many: no sensor is without white noise */
@@ -152,8 +172,14 @@ static const imki_concern concerns[] = {
      "the output step is so large against the noise that rounding errors are not white, so white "
      "noise and quantization are unreliable; log with more digits or a smaller range",
      NULL},
+    {0, find_unrest, 0, IMK_FINDING_WARNING, "unrest",
+     "slow fluctuations that no sensor at rest has: it was carried, or stood on something that "
+     "moves; "
+     "the slow terms are of the movement; record again on a firm base",
+     NULL},
     {0, find_behind_filter, 0, IMK_FINDING_WARNING, "behind_filter",
-     "a Gauss-Markov term of a few samples, or one without white noise, looks like white noise behind a low-pass filter; if the "
+     "a Gauss-Markov term of a few samples, or one without white noise, looks like white noise "
+     "behind a low-pass filter; if the "
      "sensor or its driver filters, white noise is the first value, and the term is the filter; "
      "log "
      "unfiltered samples, or several times as many in a second",
