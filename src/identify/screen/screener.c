@@ -126,9 +126,7 @@ static void find_step(imk_screener *s, size_t index, size_t count, const double 
     if (index % RESOLVED_EVERY != 0)
         return;
     const size_t of = index == 0 ? CHUNK : RESOLVED_OF;
-    const double step = imki_record_resolution(count, samples, s->value, of < count ? of : count);
-    s->step = step;
-    s->found.resolution = fmax(s->found.resolution, step);
+    s->step = imki_record_resolution(count, samples, s->value, of < count ? of : count);
 }
 
 /* The chunk raw[at] is complete. */
@@ -190,6 +188,11 @@ static void decide(imk_screener *s)
     find_step(s, s->chunk, s->count[0], s->raw[0]);
     imki_screen_stuck(s);
     imki_screen_lost(s);
+    if (s->marked) { /* a code for lost rows is no value */
+        mark_out(s, IMKI_MARK_STUCK, s->loose);
+        find_step(s, s->chunk, s->count[0], s->loose);
+    }
+    s->found.resolution = fmax(s->found.resolution, s->step);
     imki_screen_outliers(s);
     hand_on(s);
     mark_out(s, IMKI_MARK_STUCK, s->loose);

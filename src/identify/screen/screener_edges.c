@@ -3,9 +3,10 @@
  *
  * Near its largest value noise is rare: of n Gaussian samples some three are within a quarter of a
  * standard deviation of the largest, since the density falls by exp(-z/4) over that distance and z
- * is 4 to 6. Where readings are clipped and then calibrated, folded back, wrapped around, rectified,
- * compressed, or dropped by value, many are. So that one slow wave is no crowd, samples are counted
- * in pieces of 64, once each: the largest of a piece is kept, if it is among the 64 largest. */
+ * is 4 to 6. Where readings are clipped and then calibrated, folded back, wrapped around,
+ * rectified, compressed, or dropped by value, many are. So that one slow wave is no crowd, samples
+ * are counted in pieces of 64, once each: the largest of a piece is kept, if it is among the 64
+ * largest. */
 #include "screener_internal.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
  * Loggers write 0, -32768, 999 or 1e9 where a row was lost. Such zeros lie outside the other
  * samples of their chunk: these are all on one side of zero, which is farther from them than a
  * quarter of their range (6 standard deviations from their mean, for a range of 8) and three steps.
- * Another value must come twice in the chunk, to the digit, and be twice the range of the others
+ * Another value must come twice in a chunk, to the digit, and be twice the range of the others
  * away. They are taken out like stuck samples.
  *
  * Zeros among the noise may be too many: a driver that puts small values to zero, or cuts values
@@ -76,9 +76,12 @@ static bool stands_for_lost(const imk_screener *s, double value)
     const size_t equal = extremes_without(s->count[0], s->raw[0], value, &low, &high);
     if (!(low <= high) || low == high)
         return false;
+    const bool known = s->found.lost.count > 0 && value == s->found.lost_value;
     const double gap = fmax(low - value, value - high), range = high - low;
-    return gap > (value == 0 ? apart : far_apart) * range + STEPS * s->step &&
-           (value == 0 || equal > 1);
+    /* a larger step is that of the code */
+    const double steps = s->step <= range ? STEPS * s->step : 0;
+    return gap > (value == 0 ? apart : far_apart) * range + steps &&
+           (value == 0 || equal > 1 || known);
 }
 
 void imki_screen_lost(imk_screener *s)
