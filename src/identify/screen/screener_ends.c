@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-enum { LANES = 8, PILE_MIN = 10 };
+enum { PILE_MIN = 10 };
 
 static void count_at(imki_ends *e, size_t at, size_t place)
 {
@@ -47,75 +47,45 @@ static void enter(imki_ends *e, double value, size_t place)
     count_at(e, at, place);
 }
 
-/* Samples of one value; in lanes that the compiler makes vectors of. */
-static size_t count_equal(size_t count, const double *x, double value)
+/* Where each value on the list is, in steps from the first; 0: they are not on a grid. */
+static double grid_of(const imki_ends *e)
 {
-    double equal[LANES] = {0};
-    for (size_t i = 0; i < count; i += LANES) {
-        const size_t width = count - i < LANES ? count - i : LANES;
-        for (size_t l = 0; l < width; l++)
-            equal[l] += x[i + l] == value ? 1 : 0;
-    }
-    for (size_t l = 1; l < LANES; l++)
-        equal[0] += equal[l];
-    return (size_t)equal[0];
+    if (e->distinct < 2)
+        return 0;
+    const double step = e->value[0] - e->value[1];
+    for (size_t k = 2; k < e->distinct; k++)
+        if (fabs((e->value[0] - e->value[k]) / step - (double)k) > 1e-6)
+            return 0;
+    return step;
 }
 
-/* Samples of one value that follow another one. */
-static size_t count_runs(size_t count, const double *x, double value)
-{
-    double runs[LANES] = {x[0] == value};
-    for (size_t i = 1; i < count; i += LANES) {
-        const size_t width = count - i < LANES ? count - i : LANES;
-        for (size_t l = 0; l < width; l++)
-            runs[l] += (x[i + l] == value ? 1.0 : 0.0) * (x[i + l - 1] != value ? 1.0 : 0.0);
-    }
-    for (size_t l = 1; l < LANES; l++)
-        runs[0] += runs[l];
-    return (size_t)runs[0];
-}
-
-static size_t count_beyond(size_t count, const double *x, double limit, double sign)
-{
-    double beyond[LANES] = {0};
-    for (size_t i = 0; i < count; i += LANES) {
-        const size_t width = count - i < LANES ? count - i : LANES;
-        for (size_t l = 0; l < width; l++)
-            beyond[l] += sign * x[i + l] >= limit ? 1 : 0;
-    }
-    for (size_t l = 1; l < LANES; l++)
-        beyond[0] += beyond[l];
-    return (size_t)beyond[0];
-}
-
-/* Where coarse values make many samples extreme, all of them known: by whole arrays.
+/* Where coarse values make many samples extreme, and all of them are known: by their places on the
+ * grid. Runs are of interest of the first value only, and no other will be the first.
  * @return false: nothing was counted */
 static bool add_known(imki_ends *e, size_t place, size_t count, const double *samples, double sign)
 {
-    enum { FEW = 32 };
-    size_t equal[IMKI_SCREEN_ENDS], sum = 0;
+    enum { OTHER = IMKI_SCREEN_ENDS, NEW };
+    const double step = grid_of(e), first = e->value[0];
+    if (!(step > 0))
+        return false;
+    const double scale = sign / step, origin = first / step + 0.5, most = (double)e->distinct;
+    size_t found[NEW + 1] = {0}, runs = 0, last[NEW + 1] = {0}, before = OTHER;
+    for (size_t i = 0; i < count; i++) {
+        const double steps = origin - samples[i] * scale;
+        const size_t at = steps < most ? (steps >= 0 ? (size_t)steps : NEW) : OTHER;
+        found[at]++;
+        last[at] = i;
+        runs += at == 0 && before != 0;
+        before = at;
+    }
     const bool full = e->distinct == IMKI_SCREEN_ENDS;
-    const double limit = full ? e->value[IMKI_SCREEN_ENDS - 1] : -HUGE_VAL;
-    const size_t within = count_beyond(count, samples, limit, sign);
-    if (within < count / FEW)
+    if (found[NEW] > 0 || (!full && found[OTHER] > 0))
         return false;
     for (size_t k = 0; k < e->distinct; k++)
-        sum += equal[k] = count_equal(count, samples, sign * e->value[k]);
-    if (sum != within)
-        return false;
-    for (size_t k = 0; k < e->distinct; k++) {
-        const double value = sign * e->value[k];
-        if (equal[k] == 0)
-            continue;
-        e->count[k].count += equal[k];
-        if (k == 0) /* the runs of others are of no interest, and no other will be the first */
-            e->count[0].runs += count_runs(count, samples, value) -
-                                (samples[0] == value && e->last[0] + 1 == place);
-        size_t last = count - 1;
-        while (samples[last] != value)
-            last--;
-        e->last[k] = place + last;
-    }
+        e->count[k].count += found[k];
+    e->count[0].runs += runs - (sign * samples[0] == first && e->last[0] + 1 == place);
+    for (size_t k = 0; k < e->distinct; k++)
+        e->last[k] = found[k] > 0 ? place + last[k] : e->last[k];
     return true;
 }
 
