@@ -141,6 +141,13 @@ static void copy_axis(test_log *l, double axis)
     memcpy(l->gyro[(int)axis], l->gyro[0], sizeof l->gyro[0]);
 }
 
+/* The opposite of another axis, with a scale, an offset and a little noise. */
+static void follow_axis(test_log *l, double axis)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        l->gyro[(int)axis][i] = 0.1 - 1.3 * l->gyro[0][i] + 0.01 * l->gyro[1][i];
+}
+
 static void offset(test_log *l, double seconds)
 {
     for (size_t i = 0; i < l->rows; i++)
@@ -527,14 +534,17 @@ static void test_verdict(void **context)
 {
     (void)context;
     static test_log l;
-    static const fault faults[][2] = {
-        {{hold, 1.5}, {NULL, 0}}, {{burst, 100}, {NULL, 0}}, {{copy_axis, 2}, {NULL, 0}}};
-    static const char *const codes[] = {"held", "late", "copy"};
+    static const fault faults[][2] = {{{hold, 1.5}, {NULL, 0}},
+                                      {{burst, 100}, {NULL, 0}},
+                                      {{copy_axis, 2}, {NULL, 0}},
+                                      {{follow_axis, 2}, {NULL, 0}}};
+    static const char *const codes[] = {"held", "late", "copy", "follows"};
     static const char *const sentences[] = {
         "Usable with care: rows repeat the samples of a slower sensor",
         "Usable with care: rows are stamped late",
-        "Usable with care: a column is the copy of another"};
-    for (int k = 0; k < 3; k++) {
+        "Usable with care: a column is the copy of another",
+        "Usable with care: a column is computed from another"};
+    for (int k = 0; k < 4; k++) {
         imk_array_source memory;
         imk_identify_log *found;
         imk_error error;

@@ -91,11 +91,28 @@ static void compare_channels(imki_repeat_counts *s, size_t rows, double *const *
                            rows * sizeof **columns) != 0;
 }
 
+/* Missing samples count nothing. */
+static void add_products(imki_repeat_counts *s, size_t rows, double *const *columns, size_t first)
+{
+    for (size_t b = 0; b < s->channels; b++)
+        for (size_t a = 0; a <= b; a++) {
+            const double *x = columns[s->column[a]] + first, *y = columns[s->column[b]] + first;
+            double sum = 0;
+            for (size_t i = 1; i < rows; i++) {
+                const double product = (x[i] - x[i - 1]) * (y[i] - y[i - 1]);
+                sum += product == product ? product : 0;
+            }
+            s->product[a][b] += sum;
+        }
+}
+
 static void add_rows(imki_repeat_counts *s, size_t rows, double *const *columns, size_t first)
 {
     compare_channels(s, rows, columns, first);
     if (s->rows > MANY && s->stretches++ % EVERY != 0)
         return;
+    if (s->rows <= MANY)
+        add_products(s, rows, columns, first);
     uint8_t all[2][ROWS];
     memset(all, 1, sizeof all);
     for (size_t c = 0; c < s->channels; c++) {
@@ -184,18 +201,37 @@ static bool is_copy(const imki_repeat_counts *s, size_t a, size_t b)
     return !s->differ[a][b] && s->rows >= LEAST && (double)s->equal[b][0] < 0.9 * (double)s->rows;
 }
 
+/* Are the steps of one channel those of another, times a factor? Two sensors have noise of their
+ * own; a vibration that both feel would have to be thirty times as large. */
+static bool follows(const imki_repeat_counts *s, size_t a, size_t b, double *factor)
+{
+    const double own = 1e-3;
+    const double square = s->product[a][a] * s->product[b][b];
+    *factor = s->product[a][a] > 0 ? s->product[a][b] / s->product[a][a] : 0;
+    return s->rows >= LEAST && square > 0 && square < HUGE_VAL &&
+           (double)s->equal[b][0] < 0.9 * (double)s->rows &&
+           s->product[a][b] * s->product[a][b] > (1 - own) * square;
+}
+
 static void tell_copies(const imki_repeat_counts *s, const imk_log_column *columns,
                         imk_findings *findings)
 {
     for (size_t b = 1; b < s->channels; b++)
-        for (size_t a = 0; a < b; a++)
-            if (is_copy(s, a, b)) {
-                char names[2 * sizeof columns->name];
-                snprintf(names, sizeof names, "%s\t%s", columns[s->column[b]].name,
-                         columns[s->column[a]].name);
+        for (size_t a = 0; a < b; a++) {
+            double factor;
+            const bool copy = is_copy(s, a, b);
+            if (!copy && !follows(s, a, b, &factor))
+                continue;
+            char names[2 * sizeof columns->name];
+            snprintf(names, sizeof names, "%s\t%s", columns[s->column[b]].name,
+                     columns[s->column[a]].name);
+            if (copy)
                 imki_find(findings, IMK_FINDING_WARNING, "copy", names, 0, NULL);
-                break;
-            }
+            else
+                imki_find(findings, IMK_FINDING_WARNING, "follows", names,
+                          IMKI_NUMBERS(factor));
+            break;
+        }
 }
 
 void imki_repeats_tell(const imki_repeats *r, const imk_log_column *columns, double dt,

@@ -15,6 +15,8 @@ typedef struct imki_repeat_counts {
     /* of windows of rows: number, and sums of the repeats in one and of their squares */
     double windows, sum, square_sum;
     bool differ[IMK_LOG_COLUMNS_MAX][IMK_LOG_COLUMNS_MAX]; /* of channels, the earlier one first */
+    /* sums of products of their steps from row to row */
+    double product[IMK_LOG_COLUMNS_MAX][IMK_LOG_COLUMNS_MAX];
 } imki_repeat_counts;
 
 typedef struct imki_repeats {

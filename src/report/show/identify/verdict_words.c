@@ -67,6 +67,7 @@ static const struct words {
     {"stamps:rate_differs", "--rate is not the rate of the time column", NULL},
     {"unused_axis", "an axis is missing, and a column that looks like it is not used", NULL},
     {"copy", "a column is the copy of another", NULL},
+    {"follows", "a column is computed from another", NULL},
     {"runs_differ", "the logs do not have the same noise", NULL},
     {"outliers", NULL, "Outliers, left out: %s."},
     {"tails", NULL, "Samples far off, kept as noise: %s."},
