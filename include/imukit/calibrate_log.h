@@ -134,6 +134,8 @@ typedef struct imk_calibrate_record {
     double *activity; /**< per sample; NULL: not asked for */
     size_t diagnostic_count;
     imk_diagnostic_finding diagnostic[IMK_CALIBRATE_DIAGNOSTICS_MAX];
+    uint64_t axes_unseen;          /**< mistakes about the axes that its turns would not show, as
+                                      imk_record_axes_unseen() */
     imk_thermal_findings *thermal; /**< of the procedure "thermal", else NULL */
     bool mag_counts;               /**< the magnetometer is in counts, and is not calibrated */
     imk_magnetometer_record mag;   /**< its magnetometer, if record.mag is there */

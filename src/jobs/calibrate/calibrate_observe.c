@@ -74,6 +74,8 @@ static void diagnose(const imk_calibrate_log *b, imk_calibrate_record *log)
     log->diagnostic_count = imk_record_diagnostics(
         &log->record, &log->stationary, log->interval_count, log->interval, b->calibration->gravity,
         &b->calibration->model, IMK_CALIBRATE_DIAGNOSTICS_MAX, log->diagnostic);
+    log->axes_unseen = imk_record_axes_unseen(&log->record, log->interval_count, log->interval,
+                                              &b->calibration->model);
     diagnostics_of_named_holds(log);
 }
 
@@ -97,6 +99,7 @@ static imk_status detect(imk_calibrate_log *b, imk_calibrate_record *log, imk_er
     }
     /* A log too short for holds may still do for a table. */
     log->interval_count = 0;
+    log->axes_unseen = UINT64_MAX;
     log->stationary.window = 0;
     log->activity = NULL;
     return imk_procedure_is_known(log->procedure) && status != IMK_ERROR_MEMORY ? IMK_OK : status;

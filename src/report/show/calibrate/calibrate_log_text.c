@@ -252,7 +252,7 @@ static bool mended(const imk_diagnostic_finding *d, const char *code,
     *message = (imki_calibrate_message){.level = IMK_FINDING_FAILURE, .code = code};
     if (count == 0 || (count == 1 && d->sensor >= 0))
         return false;
-    (void)imki_axes_text(d->classes, message->text, sizeof message->text);
+    (void)imki_axes_text(d->classes, true, message->text, sizeof message->text);
     return true;
 }
 
@@ -294,6 +294,13 @@ static imki_calibrate_message left_handed(const imk_diagnostic_finding *d)
         "and the turns of the gyros lead from one attitude of the accelerometers to the next only "
         "with this sign changed; change the sign of this column in the log",
         sensor, imk_axis_letter(d->axis));
+}
+
+static imki_calibrate_message odd_turn(const imk_diagnostic_finding *d)
+{
+    imki_calibrate_message message = {.level = IMK_FINDING_WARNING, .code = "odd_turn"};
+    (void)imki_axes_text(d->classes, false, message.text, sizeof message.text);
+    return message;
 }
 
 imki_calibrate_message imki_message_on_log(const imk_calibrate_log *b,
@@ -351,6 +358,8 @@ imki_calibrate_message imki_message_on_log(const imk_calibrate_log *b,
         return swapped(d);
     case IMK_DIAGNOSTIC_LEFT_HANDED:
         return left_handed(d);
+    case IMK_DIAGNOSTIC_ODD_TURN:
+        return odd_turn(d);
     case IMK_DIAGNOSTIC_TIME_UNIT:
         return time_unit(log, d->value);
     case IMK_DIAGNOSTIC_SCALE:
