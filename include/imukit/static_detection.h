@@ -38,9 +38,12 @@ typedef struct imk_static_interval {
     double sigma[2][IMK_AXES_MAX];   /**< 1 sigma of the mean, from the scatter within, with
                                         correlation of neighbours */
     double scatter[2][IMK_AXES_MAX]; /**< standard deviation of a sample */
-    double temperature;              /**< mean [K]; NaN: not known */
-    double temperature_rate;         /**< slope [K/s] */
-    int section;                     /**< section at its middle; -1: none */
+    /** Part of sigma: what the rounding of readings to steps leaves in the mean, 1 sigma, where
+     * their noise does not carry them over the steps. */
+    double rounding[2][IMK_AXES_MAX];
+    double temperature;      /**< mean [K]; NaN: not known */
+    double temperature_rate; /**< slope [K/s] */
+    int section;             /**< section at its middle; -1: none */
 } imk_static_interval;
 
 /** Findings of the detection about the log. */

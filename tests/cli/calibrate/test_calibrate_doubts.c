@@ -4,6 +4,7 @@
 #include "cli/run_command.h"
 
 #define PLACE "--position '48.1 deg, 11.6 deg, 520 m'"
+#define POSES "$I calibrate poses.csv -p multiposition " PLACE
 #define SIX "$I calibrate faces.csv -p sixposition " PLACE
 
 static void check_verdict(const char *line, int code, const char *verdict)
@@ -14,8 +15,7 @@ static void check_verdict(const char *line, int code, const char *verdict)
     check_contains(out, verdict, line);
 }
 
-/* Six faces, from one to the next about x three times, then about z. */
-static void write_faces(void)
+static void put_unit(void)
 {
     put("unit.yaml", "imukit: 1\n"
                      "name: bench unit\n"
@@ -27,6 +27,33 @@ static void write_faces(void)
                      "  scale_factor: {fixed: -3000 6000 9000 ppm}\n"
                      "  noise: {velocity_random_walk: 0.05 m/s/sqrt(h), bias_instability: 30 "
                      "ug}\n");
+}
+
+/* 24 attitudes over the sphere, the first for 6 s, then one every 6 s. */
+static void write_poses(void)
+{
+    enum { COUNT = 24, APART = 5 };
+    char text[3000];
+    size_t used = (size_t)snprintf(text, sizeof text,
+                                   "imukit_motion: 1\nstart: {latitude: 48.1 deg, longitude: 11.6 "
+                                   "deg, height: 520 m}\nsteps:\n  - hold 6 s\n");
+    for (int i = 1; i < COUNT; i++) {
+        const int k = i * APART % COUNT;
+        used += (size_t)snprintf(
+            text + used, sizeof text - used, "  - pose %.2f %.2f %.2f deg in 2 s\n  - hold 4 s\n",
+            remainder(137.50776 * k, 360), asin(1 - (2.0 * k + 1) / COUNT) * 57.29578,
+            remainder(63.0 * i, 360));
+    }
+    put("motion.yaml", text);
+    put_unit();
+    assert_int_equal(
+        run("$I simulate unit.yaml --motion motion.yaml --rate 100Hz --seed 3 -o sound.csv"), 0);
+}
+
+/* Six faces, from one to the next about x three times, then about z. */
+static void write_faces(void)
+{
+    put_unit();
     put("faces.yaml", "imukit_motion: 1\n"
                       "start: {latitude: 48.1 deg, longitude: 11.6 deg, height: 520 m}\n"
                       "steps:\n"
@@ -70,10 +97,31 @@ static void signs_of_six_faces(void **state)
     sweep();
 }
 
+/* Steps of twice the noise do no harm; coarser ones leave an error in the means that no residual
+ * shows, and so does a dead band. */
+static void coarse_steps(void **state)
+{
+    (void)state;
+    write_poses();
+    spoil("sound.csv", "poses.csv", "for(i=2;i<5;i++)$i=0.1*sprintf(\"%d\",$i*10+1000.5)-100");
+    check_verdict(POSES " --strict", 0, "Good: ");
+    spoil("sound.csv", "poses.csv", "for(i=2;i<5;i++)$i=sprintf(\"%d\",$i+1000.5)-1000");
+    check_verdict(POSES, 0, "gyro bias to 0.1");
+    check_contains(err, "the readings of gyro_x, gyro_y, gyro_z are rounded to steps", "rounded");
+    spoil("sound.csv", "poses.csv", "for(i=2;i<5;i++)if($i<1&&$i>-1)$i=0");
+    check_verdict(POSES, 0, "gyro bias to 0.3");
+    check_contains(err, "or are cut off around zero", "dead band");
+    spoil("sound.csv", "poses.csv", "$7=0.2*sprintf(\"%d\",$7*5+1000.5)-200");
+    check_verdict(POSES, 0, "Usable with care");
+    check_contains(err, "the readings of accel_z are rounded to steps", "accel_z");
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(signs_of_six_faces),
+        cmocka_unit_test(coarse_steps),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
