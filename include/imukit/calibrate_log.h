@@ -19,7 +19,12 @@
 
 IMK_BEGIN_C
 
-enum { IMK_CALIBRATE_DIAGNOSTICS_MAX = 16, IMK_CALIBRATE_REFERENCES = 9, IMK_CALIBRATE_POSES = 3 };
+enum {
+    IMK_CALIBRATE_DIAGNOSTICS_MAX = 16,
+    IMK_CALIBRATE_LOST_MAX = 8,
+    IMK_CALIBRATE_REFERENCES = 9,
+    IMK_CALIBRATE_POSES = 3
+};
 
 /** Numbers of a sensor's axes from a data sheet. */
 typedef struct imk_calibrate_counts {
@@ -131,6 +136,8 @@ typedef struct imk_calibrate_record {
     imk_static_findings stationary; /**< window 0: not looked at */
     size_t interval_count;
     imk_static_interval *interval;
+    size_t lost_count; /**< stretches that look like rests, but are none; the first are kept */
+    imk_static_lost lost[IMK_CALIBRATE_LOST_MAX];
     double *activity; /**< per sample; NULL: not asked for */
     size_t diagnostic_count;
     imk_diagnostic_finding diagnostic[IMK_CALIBRATE_DIAGNOSTICS_MAX];

@@ -79,6 +79,18 @@ static void diagnose(const imk_calibrate_log *b, imk_calibrate_record *log)
     diagnostics_of_named_holds(log);
 }
 
+/* Rests that the test lacks. Sections say by themselves what a rest is. */
+static void find_lost(const imk_calibrate_log *b, imk_calibrate_record *log)
+{
+    const bool by_sections = log->record.section && (log->settings.labelled_only ||
+                                                     log->procedure != IMK_PROCEDURE_MULTIPOSITION);
+    if (log->procedure > IMK_PROCEDURE_SIXPOSITION || by_sections)
+        return;
+    log->lost_count = imk_static_lost_rests(
+        &log->record, &log->settings.stationary, &b->calibration->model, &log->stationary,
+        log->interval_count, log->interval, IMK_CALIBRATE_LOST_MAX, log->lost);
+}
+
 /* Where it stands still: for the diagnostics, the table of poses and the plot. */
 static imk_status detect(imk_calibrate_log *b, imk_calibrate_record *log, imk_error *error)
 {
@@ -95,6 +107,7 @@ static imk_status detect(imk_calibrate_log *b, imk_calibrate_record *log, imk_er
     if (status == IMK_OK) {
         keep_labelled(log);
         diagnose(b, log);
+        find_lost(b, log);
         return IMK_OK;
     }
     /* A log too short for holds may still do for a table. */

@@ -117,11 +117,36 @@ static void coarse_steps(void **state)
     sweep();
 }
 
+/* Rests that were not taken are told, and many of them are a doubt. */
+static void lost_rests(void **state)
+{
+    (void)state;
+    write_poses();
+    spoil("sound.csv", "poses.csv", "");
+    check_verdict(POSES " --strict", 0, "Good: ");
+    assert_null(strstr(out, "between turns"));
+    spoil("sound.csv", "poses.csv", "if($1>77.8&&$1<82.2)$5+=(NR*7919%100-50)/50");
+    check_verdict(POSES, 0, "Good: ");
+    check_contains(out, "1 stretch between turns, of 24, looks like a rest, but cannot be used",
+                   "noise");
+    check_contains(out, "the noise of accel_x is ", "noise");
+    spoil("sound.csv", "poses.csv", "if($1>72)for(i=2;i<5;i++)$i*=2");
+    check_verdict(POSES, 0, "Usable with care (1 warning)");
+    check_contains(err, " stretches between turns, of 24, look like rests", "range");
+    write_faces();
+    spoil("sound.csv", "faces.csv", "if($1>7.5&&$1<14.5)$5+=(NR*7919%100-50)/50");
+    assert_int_equal(run(SIX), 1);
+    check_contains(err, "found 5; 1 more looks like one, but cannot be used: ", "six faces");
+    check_contains(err, "; repeat it, or add a hold with y down", "six faces");
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(signs_of_six_faces),
         cmocka_unit_test(coarse_steps),
+        cmocka_unit_test(lost_rests),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -286,6 +286,26 @@ static void add_coarse(const imk_calibrate_log *b, const imk_calibrate_record *l
     free(names.bytes);
 }
 
+/* Rests that were not taken: what is estimated holds without them, but a log that lacks many of its
+ * rests is not the one that was meant. */
+static void add_lost(const imk_calibrate_record *log, imk_verdict *v)
+{
+    const double many = 0.2;
+    char list[700];
+    const double all = (double)(log->lost_count + log->interval_count);
+    const bool one = log->lost_count == 1;
+    if (log->lost_count == 0)
+        return;
+    imki_lost_text(log, list, sizeof list);
+    add(v, imki_calibrate_say((double)log->lost_count > many * all ? IMK_FINDING_WARNING
+                                                                   : IMK_FINDING_NOTE,
+                              "lost_rests",
+                              "%.150s: %zu stretch%s between turns, of %g, look%s like %s, but "
+                              "cannot be used: %s",
+                              log->path, log->lost_count, one ? "" : "es", all, one ? "s" : "",
+                              one ? "a rest" : "rests", list));
+}
+
 /* "gyro.nonlinearity.k2" of gyro.nonlinearity.k2.x. */
 static void term_of(imk_model_parameter parameter, char term[IMK_MODEL_PARAMETER_NAME])
 {
@@ -462,6 +482,7 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
         add_undetermined(b, log, &v);
         add_means(b, log, &v);
         add_coarse(b, log, &v);
+        add_lost(log, &v);
         add_thermal(&v, log);
         imki_turns_verdict(b, log, &v);
     }

@@ -44,12 +44,29 @@ static size_t few_temperatures(const message *to, const imk_calibrate_record *lo
                log->path, log->record.count, cold, none, error->limit);
 }
 
+/* Holds are missing, and some were there that were not taken. */
+static size_t without_lost(const message *to, const imk_calibrate_record *log,
+                           const imk_error *error)
+{
+    char list[700];
+    imki_lost_text(log, list, sizeof list);
+    return say(to,
+               "%s: %s needs at least %g holds, found %g; %zu more look%s like %s, but cannot be "
+               "used: %s; repeat %s%s%s",
+               log->path, imk_procedure_name(log->procedure), error->limit, error->value,
+               log->lost_count, log->lost_count == 1 ? "s" : "",
+               log->lost_count == 1 ? "one" : "holds", list, log->lost_count == 1 ? "it" : "them",
+               error->expected[0] ? ", or " : "", error->expected);
+}
+
 static size_t too_short(const message *to, const imk_calibrate_record *log, const imk_error *error)
 {
     static const char *const things[] = {"hold", "turn", "step"};
     static const char *const many[] = {"holds", "turns", "steps of constant reference"};
     const char *name = imk_procedure_name(log->procedure);
     const char *due = error->expected;
+    if (strcmp(error->field, "hold") == 0 && log->lost_count > 0)
+        return without_lost(to, log, error);
     for (size_t k = 0; k < 3; k++)
         if (strcmp(error->field, things[k]) == 0)
             return say(to, "%s: %s needs at least %g %s, found %g%s%s", log->path, name,
