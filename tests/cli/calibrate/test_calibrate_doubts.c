@@ -141,12 +141,29 @@ static void lost_rests(void **state)
     sweep();
 }
 
+/* Few sensors are off by 6 %, hardly any by 10 %: the first is told, the second is a doubt. */
+static void scales_of_few_sensors(void **state)
+{
+    (void)state;
+    write_poses();
+    spoil("sound.csv", "poses.csv", "$4*=1.06");
+    check_verdict(POSES " --strict", 0, "Good: ");
+    check_contains(out, "gyro_z reads 1.06 times the true rate: few such sensors err", "1.06");
+    spoil("sound.csv", "poses.csv", "$4*=1.1");
+    check_verdict(POSES, 0, "Usable with care (1 warning)");
+    check_contains(err, "gyro_z reads 1.1 times the true rate: few such sensors err", "1.1");
+    spoil("sound.csv", "poses.csv", "for(i=2;i<5;i++)$i*=1.12");
+    check_verdict(POSES, 0, "Usable with care (1 warning)");
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(signs_of_six_faces),
         cmocka_unit_test(coarse_steps),
         cmocka_unit_test(lost_rests),
+        cmocka_unit_test(scales_of_few_sensors),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

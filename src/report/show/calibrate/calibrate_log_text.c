@@ -17,6 +17,8 @@ static const double factor_tolerance = 0.12;
 
 /* Scale factors further from 1 are no sensor's. */
 static const double scale_doubted = 0.1;
+/* The same of a solution, in which the sensor may be one of the few: a doubt from here on. */
+static const double scale_rare = 0.08;
 /* Factor by which readings are off that are not those of what they are said to be. */
 static const double scale_useless = 1.5;
 
@@ -183,7 +185,8 @@ static imki_calibrate_message scale(const imk_calibrate_log *b, const imk_diagno
     static const char *const codes[2] = {"gyro_scale", "accel_scale"};
     imki_calibrate_message m = {.level = IMK_FINDING_FAILURE, .code = codes[d->sensor == 1]};
     if (b->result && d->value > 1 / scale_useless && d->value < scale_useless)
-        m.level = d->limit < scale_doubted ? IMK_FINDING_NOTE : IMK_FINDING_WARNING;
+        m.level = d->limit < scale_doubted && fabs(d->value - 1) < scale_rare ? IMK_FINDING_NOTE
+                                                                              : IMK_FINDING_WARNING;
     imki_scale_text(b, d, m.text, sizeof m.text);
     return m;
 }
