@@ -128,10 +128,12 @@ typedef struct imk_procedure_findings {
     imk_static_findings stationary; /**< only for procedures that detect holds */
     size_t observations, turns;     /**< numbers added to the calibration */
     size_t first_observation, first_turn;
-    size_t intervals; /**< number of stretches found */
-    size_t left_out;  /**< stretches not used: saturated, not finite, too short */
-    double spread;    /**< spread of the directions of holds: smallest eigenvalue of the mean outer
-                         product of their unit vectors, 1/3 at best; 0: all in one plane */
+    size_t intervals;    /**< number of stretches found */
+    size_t left_out;     /**< stretches not used: saturated, not finite, too short, contradicted */
+    size_t contradicted; /**< of these, holds whose label says another face than their readings */
+    size_t contradicted_at; /**< a sample of the first of them */
+    double spread; /**< spread of the directions of holds: smallest eigenvalue of the mean outer
+                      product of their unit vectors, 1/3 at best; 0: all in one plane */
     double lag, lag_sigma; /**< delay of the readings against a reference that is never constant,
                               estimated and corrected [s]; sigma 0: not estimated */
     imk_turns_findings known_turns; /**< of the procedure "turns", else zeros */

@@ -173,6 +173,8 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_sessio
     }
     call->findings->intervals += list->found;
     call->findings->left_out += list->left_out;
+    call->findings->contradicted += list->contradictions;
+    call->findings->contradicted_at = list->contradicted.at.begin;
     call->findings->spread = spread_of(list);
     return IMK_OK;
 }

@@ -63,7 +63,7 @@ static void write_faces(void)
                       "  - hold 6 s\n  - rotate z 90 deg at 45 deg/s\n"
                       "  - hold 6 s\n  - rotate z 180 deg at 90 deg/s\n"
                       "  - hold 6 s\nthen: hold\n");
-    assert_int_equal(run("$I simulate unit.yaml --motion faces.yaml --rate 100Hz --duration 48s "
+    assert_int_equal(run("$I simulate unit.yaml --motion faces.yaml --rate 100Hz --duration 49s "
                          "--seed 3 -o sound.csv"),
                      0);
 }
@@ -157,6 +157,42 @@ static void scales_of_few_sensors(void **state)
     sweep();
 }
 
+/* The sound log of six faces with a section per hold, one word for each. */
+static void label_faces(const char *names, const char *statement)
+{
+    char line[800];
+    snprintf(line, sizeof line,
+             "awk -F, -v OFS=, 'BEGIN{split(\"%s\",n,\" \")}NR==1{print $0,\"section\";next}"
+             "{l=$1%%8.5<6?n[int($1/8.5)+1]:\"\";%s;print $0,l}' sound.csv >faces.csv",
+             names, statement);
+    assert_int_equal(run(line), 0);
+}
+
+static void labels_that_contradict(void **state)
+{
+    (void)state;
+    write_faces();
+    label_faces("z_down y_down z_up y_up x_up x_down", "");
+    check_verdict(SIX " --strict", 0, "Good: ");
+    label_faces("z_up y_down z_down y_up x_up x_down", "");
+    assert_int_equal(run(SIX), 1);
+    check_contains(err,
+                   "the label z_up contradicts the readings (2 of 6 labels do): accel_z reads "
+                   "gravity there, with a negative sign (z is down); label each hold by",
+                   "up and down");
+    label_faces("z_down y_down z_up y_up x_up x_up", "");
+    assert_int_equal(run(SIX), 1);
+    check_contains(err,
+                   "found 5: add a hold with x down, or correct the label x_up of a hold that "
+                   "reads x down",
+                   "one label twice");
+    label_faces("z_down y_down z_up y_up x_up x_down", "if($1<3)l=\"x_up\"");
+    check_verdict(SIX, 0, "Usable with care (1 warning)");
+    check_contains(err, "the label x_up names another face than the accelerometers show",
+                   "one of seven");
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -164,6 +200,7 @@ int main(void)
         cmocka_unit_test(coarse_steps),
         cmocka_unit_test(lost_rests),
         cmocka_unit_test(scales_of_few_sensors),
+        cmocka_unit_test(labels_that_contradict),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

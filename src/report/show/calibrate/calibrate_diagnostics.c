@@ -286,6 +286,19 @@ static void add_coarse(const imk_calibrate_log *b, const imk_calibrate_record *l
     free(names.bytes);
 }
 
+/* Few labels that the readings contradict: their holds are left out. */
+static void add_contradicted(const imk_calibrate_record *log, imk_verdict *v)
+{
+    const imk_procedure_findings *f = &log->findings;
+    const char *label = f->contradicted ? imki_label_of(&log->record, f->contradicted_at) : NULL;
+    if (label)
+        add(v, imki_calibrate_say(
+                   IMK_FINDING_WARNING, "wrong_label",
+                   "%.150s: the label %.60s names another face than the accelerometers show, and "
+                   "the hold is left out (%zu such label%s): correct the labels",
+                   log->path, label, f->contradicted, f->contradicted == 1 ? "" : "s"));
+}
+
 /* Rests that were not taken: what is estimated holds without them, but a log that lacks many of its
  * rests is not the one that was meant. */
 static void add_lost(const imk_calibrate_record *log, imk_verdict *v)
@@ -483,6 +496,7 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
         add_means(b, log, &v);
         add_coarse(b, log, &v);
         add_lost(log, &v);
+        add_contradicted(log, &v);
         add_thermal(&v, log);
         imki_turns_verdict(b, log, &v);
     }

@@ -178,6 +178,19 @@ static size_t not_following(const message *to, const imk_calibrate_record *log,
                log->path, error->field, imk_axis_letter(error->index), error->value);
 }
 
+/* Labels of faces that the readings do not show. */
+static size_t wrong_labels(const message *to, const imk_calibrate_record *log,
+                           const imk_error *error)
+{
+    const bool up = error->index % 2 == 0;
+    const char axis = imk_axis_letter(error->index / 2);
+    return say(to,
+               "%s: the label %s contradicts the readings (%g of %g labels do): accel_%c reads "
+               "gravity there, with a %s sign (%c is %s); %s",
+               log->path, error->found, error->value, error->limit, axis,
+               up ? "positive" : "negative", axis, up ? "up" : "down", error->expected);
+}
+
 static size_t of_record(const message *to, const imk_calibrate_log *b,
                         const imk_calibrate_record *log, const imk_error *error)
 {
@@ -193,6 +206,8 @@ static size_t of_record(const message *to, const imk_calibrate_log *b,
     case IMK_ERROR_NOT_FINITE:
         return not_finite(to, log);
     case IMK_ERROR_CONFLICT:
+        if (strcmp(error->field, "section") == 0 && error->index >= 0)
+            return wrong_labels(to, log, error);
         return not_following(to, log, error);
     default:
         return 0;
