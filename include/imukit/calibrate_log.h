@@ -19,7 +19,12 @@
 
 IMK_BEGIN_C
 
-enum { IMK_CALIBRATE_DIAGNOSTICS_MAX = 16, IMK_CALIBRATE_REFERENCES = 9, IMK_CALIBRATE_POSES = 3 };
+enum {
+    IMK_CALIBRATE_DIAGNOSTICS_MAX = 16,
+    IMK_CALIBRATE_LOST_MAX = 8,
+    IMK_CALIBRATE_REFERENCES = 9,
+    IMK_CALIBRATE_POSES = 3
+};
 
 /** Numbers of a sensor's axes from a data sheet. */
 typedef struct imk_calibrate_counts {
@@ -131,9 +136,13 @@ typedef struct imk_calibrate_record {
     imk_static_findings stationary; /**< window 0: not looked at */
     size_t interval_count;
     imk_static_interval *interval;
+    size_t lost_count; /**< stretches that look like rests, but are none; the first are kept */
+    imk_static_lost lost[IMK_CALIBRATE_LOST_MAX];
     double *activity; /**< per sample; NULL: not asked for */
     size_t diagnostic_count;
     imk_diagnostic_finding diagnostic[IMK_CALIBRATE_DIAGNOSTICS_MAX];
+    uint64_t axes_unseen;          /**< mistakes about the axes that its turns would not show, as
+                                      imk_record_axes_unseen() */
     imk_thermal_findings *thermal; /**< of the procedure "thermal", else NULL */
     bool mag_counts;               /**< the magnetometer is in counts, and is not calibrated */
     imk_magnetometer_record mag;   /**< its magnetometer, if record.mag is there */

@@ -130,6 +130,9 @@ typedef struct imk_calibration {
     double earth_rate; /**< default 7.292115e-5 rad/s; 0: the references contain no Earth rate, and
                           the gyro bias then includes it */
     bool robust;       /**< refuse outliers; default true */
+    bool gyro_coarse; /**< gyros are rounded to steps coarser than their noise: the residuals do not
+                         show this error, which is the same in all holds, so sigmas of gyro readings
+                         and of turns are at least as stated; default false */
     size_t record_count;
     const imk_test_record *record[IMK_TEST_RECORDS_MAX];
     size_t fixture_count;

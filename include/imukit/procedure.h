@@ -128,10 +128,12 @@ typedef struct imk_procedure_findings {
     imk_static_findings stationary; /**< only for procedures that detect holds */
     size_t observations, turns;     /**< numbers added to the calibration */
     size_t first_observation, first_turn;
-    size_t intervals; /**< number of stretches found */
-    size_t left_out;  /**< stretches not used: saturated, not finite, too short */
-    double spread;    /**< spread of the directions of holds: smallest eigenvalue of the mean outer
-                         product of their unit vectors, 1/3 at best; 0: all in one plane */
+    size_t intervals;    /**< number of stretches found */
+    size_t left_out;     /**< stretches not used: saturated, not finite, too short, contradicted */
+    size_t contradicted; /**< of these, holds whose label says another face than their readings */
+    size_t contradicted_at; /**< a sample of the first of them */
+    double spread; /**< spread of the directions of holds: smallest eigenvalue of the mean outer
+                      product of their unit vectors, 1/3 at best; 0: all in one plane */
     double lag, lag_sigma; /**< delay of the readings against a reference that is never constant,
                               estimated and corrected [s]; sigma 0: not estimated */
     imk_turns_findings known_turns; /**< of the procedure "turns", else zeros */
@@ -203,6 +205,9 @@ typedef enum imk_diagnostic {
     IMK_DIAGNOSTIC_UNEQUAL_AXES, /**< the sigmas stated of `axis` and `other` of `sensor`, the
                                     quietest and the noisiest, differ by the factor `value`, and no
                                     residuals tell what else makes them scatter */
+    IMK_DIAGNOSTIC_ODD_TURN, /**< few turns do not fit the axes as they stand, and would with axes
+                                that are changed: too few to be sure. value: angle by which they
+                                miss [rad] */
     IMK_DIAGNOSTICS
 } imk_diagnostic;
 
@@ -210,8 +215,8 @@ typedef struct imk_diagnostic_finding {
     imk_diagnostic kind;
     int sensor, axis, other; /**< -1: none */
     double value, limit;
-    uint64_t classes; /**< of a record, SWAPPED_AXES and LEFT_HANDED: how the axes may be mended,
-                         for imk_axes_mendings(); else 0 */
+    uint64_t classes; /**< of a record, SWAPPED_AXES, LEFT_HANDED and ODD_TURN: how the axes may be
+                         mended, for imk_axes_mendings(); else 0 */
 } imk_diagnostic_finding;
 
 /** Check a record, with the static intervals found in it, before the calibration is solved.
@@ -221,6 +226,14 @@ IMK_API size_t imk_record_diagnostics(const imk_test_record *record,
                                       const imk_static_interval *interval, double gravity,
                                       const imk_model *model, size_t capacity,
                                       imk_diagnostic_finding *diagnostic);
+/** Which mistakes about the axes the turns between the static intervals would not show: bit k is
+ *  set when the gyros read as imk_signed_axes_of(k), and so each of its mendings
+ *  (imk_axes_mendings()), would fit the turns as well. The signs of single gyros are bits 1, 2 and
+ *  4, all of them bit 7; a sign of an accelerometer is that of both other gyros.
+ *  @return all bits when there are not enough turns to tell anything */
+IMK_API uint64_t imk_record_axes_unseen(const imk_test_record *record, size_t interval_count,
+                                        const imk_static_interval *interval,
+                                        const imk_model *model);
 /** Check a solution. @return number of diagnostics written, at most `capacity`, the gravest first
  */
 IMK_API size_t imk_solution_diagnostics(const imk_calibration *calibration,

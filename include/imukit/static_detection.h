@@ -38,9 +38,12 @@ typedef struct imk_static_interval {
     double sigma[2][IMK_AXES_MAX];   /**< 1 sigma of the mean, from the scatter within, with
                                         correlation of neighbours */
     double scatter[2][IMK_AXES_MAX]; /**< standard deviation of a sample */
-    double temperature;              /**< mean [K]; NaN: not known */
-    double temperature_rate;         /**< slope [K/s] */
-    int section;                     /**< section at its middle; -1: none */
+    /** Part of sigma: what the rounding of readings to steps leaves in the mean, 1 sigma, where
+     * their noise does not carry them over the steps. */
+    double rounding[2][IMK_AXES_MAX];
+    double temperature;      /**< mean [K]; NaN: not known */
+    double temperature_rate; /**< slope [K/s] */
+    int section;             /**< section at its middle; -1: none */
 } imk_static_interval;
 
 /** Findings of the detection about the log. */
@@ -80,6 +83,34 @@ IMK_API imk_status imk_static_detect(const imk_test_record *record,
 /** Mean, sigma and scatter of any stretch of samples, as in an interval that was detected. */
 IMK_API imk_static_interval imk_static_summary(const imk_test_record *record, size_t begin,
                                                size_t end);
+
+/** Why a stretch between turns that looks like a rest is none. */
+typedef enum imk_lost_reason {
+    IMK_LOST_NOISY = 0, /**< the noise of an axis is `value` times that of the rests */
+    IMK_LOST_SLIDES,    /**< the vertical moves by the angle `value` [rad] */
+    IMK_LOST_SHORT,     /**< shorter than the settings' minimum */
+    IMK_LOST_OTHER_RATE /**< the gyros read another rate than before */
+} imk_lost_reason;
+
+/** A stretch that looks like a rest, but is not among the intervals. */
+typedef struct imk_static_lost {
+    size_t begin, end; /**< samples begin … end - 1 */
+    imk_lost_reason reason;
+    int sensor, axis; /**< that is the noisiest */
+    double value;
+} imk_static_lost;
+
+/** Find stretches between turns, at least half as long as the mean interval, in which the unit
+ *  hardly moves and which the detection did not take. It needs three gyros and three accelerometers
+ *  whose units are known.
+ *  @param interval  found by imk_static_detect() with these settings
+ *  @param lost      room for `capacity`
+ *  @return their number, also beyond the capacity */
+IMK_API size_t imk_static_lost_rests(const imk_test_record *record,
+                                     const imk_static_settings *settings, const imk_model *model,
+                                     const imk_static_findings *findings, size_t interval_count,
+                                     const imk_static_interval *interval, size_t capacity,
+                                     imk_static_lost *lost);
 
 IMK_END_C
 #endif

@@ -231,7 +231,7 @@ static void nothing_has_no_sign(void **state)
     assert_non_null(file);
     fprintf(file, "time [s],section,accel_x [m/s^2],accel_y [m/s^2],accel_z [m/s^2]\n");
     for (int k = 0; k < 1200; k++) {
-        const double noise = k % 4 == 0 || k % 4 == 3 ? 0.01 : -0.01;
+        const double noise = (k % 4 == 0 || k % 4 == 3 ? 0.01 : -0.01) * (1 + k / 4 % 2);
         fprintf(file, "%.2f,f%d", k * 0.01, k / 200);
         for (int j = 0; j < 3; j++)
             fprintf(file, ",%.7f",

@@ -168,19 +168,24 @@ static double next_square(const imki_estimator *e, const imki_fit *fit, int g, b
                 square * fmax(0.01, 1.0 + (excess - fit->slow_square[g]) / fit->freedom[g]));
 }
 
-/* What is assumed may have reasons that repeats do not show, such as a cube that is not square: it
- * is never taken for better than stated. */
-static bool is_assumed(int part)
+static bool is_of_gyro(int part)
 {
-    return part == IMKI_PART_PLACEMENT;
+    return part >= IMKI_PART_AXIS ? part < IMKI_PART_AXIS + IMK_AXES_MAX : part == IMK_GROUP_GYRO;
+}
+
+/* What is assumed may have reasons that repeats do not show, such as a cube that is not square or
+ * coarse steps: it is never taken for better than stated. */
+static bool is_assumed(const imki_estimator *e, int part)
+{
+    return part == IMKI_PART_PLACEMENT ||
+           (e->problem->gyro_coarse && (is_of_gyro(part) || part == IMK_GROUP_TURN));
 }
 
 /* An added sigma that few axes show: its interval says how little that is. */
 static double least_freedom_of(const imki_estimator *e, int part)
 {
-    const bool of_axis = part >= IMKI_PART_AXIS;
-    const bool gyro = of_axis ? part < IMKI_PART_AXIS + IMK_AXES_MAX : part == IMK_GROUP_GYRO;
-    const bool accel = of_axis ? !gyro : part == IMK_GROUP_ACCEL;
+    const bool gyro = is_of_gyro(part);
+    const bool accel = part >= IMKI_PART_AXIS ? !gyro : part == IMK_GROUP_ACCEL;
     return (gyro && e->added[IMK_GYRO] > 0.0) || (accel && e->added[IMK_ACCEL] > 0.0)
                ? 1.0
                : least_freedom;
@@ -207,7 +212,7 @@ static imk_status find_factors(imki_estimator *e, double tolerance, bool held[IM
             if (round > 0 && e->factor[g] < 1.0 && fit->redundancy[g] < least_freedom_of(e, g))
                 held[g] = true;
             if (!held[g] && fit->redundancy[g] >= least_freedom_of(e, g) && fit->freedom[g] > 0.0)
-                factor = fmax(is_assumed(g) ? 1.0 : least_factor,
+                factor = fmax(is_assumed(e, g) ? 1.0 : least_factor,
                               sqrt(next_square(e, fit, g, round == 0)));
             same = same && fabs(factor - e->factor[g]) <= tolerance * e->factor[g];
             e->factor[g] = factor;
@@ -229,6 +234,6 @@ imk_status imki_variance_factors(imki_estimator *e, double tolerance, imki_fit *
     if (status == IMK_OK && again)
         status = find_factors(e, tolerance, held, fit);
     for (int g = 0; g < IMKI_PARTS; g++)
-        fit->estimated[g] = !held[g] && !(is_assumed(g) && e->factor[g] <= 1.0);
+        fit->estimated[g] = !held[g] && !(is_assumed(e, g) && e->factor[g] <= 1.0);
     return status;
 }

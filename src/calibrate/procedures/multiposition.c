@@ -389,6 +389,18 @@ static imk_status free_parameters(const gathering *g)
     return status;
 }
 
+/* What rounding leaves in the mean of a gyro is most of what its bias is uncertain by. */
+static bool is_coarse(const gathering *g, const imki_hold_noise *noise)
+{
+    bool coarse = false;
+    for (int i = 0; i < g->record->axis_count[IMK_GYRO]; i++) {
+        const double rounding = noise->rounding[IMK_GYRO][i];
+        coarse = coarse ||
+                 noise->holds * rounding * rounding > noise->level[IMK_GYRO][i] / noise->typical;
+    }
+    return coarse;
+}
+
 /* Everything is there: append. */
 static imk_status append(gathering *g)
 {
@@ -405,6 +417,7 @@ static imk_status append(gathering *g)
     const imki_turn_surroundings around = surroundings_of(g);
     imki_hold_noise noise;
     imki_hold_noise_find(g->record, g->hold_count, g->hold, &noise);
+    calibration->gyro_coarse = calibration->gyro_coarse || is_coarse(g, &noise);
     findings->first_observation = calibration->observation_count;
     findings->first_turn = calibration->turn_count;
     for (size_t k = 0; k < g->hold_count; k++) {

@@ -28,6 +28,8 @@ bool imki_start_gyros(const imk_test_record *record, const imki_scaling *accel, 
 typedef struct imki_hold_noise {
     double level[2][IMK_AXES_MAX]; /* variance of a mean times its samples, common to the holds */
     double typical;                /* length of a hold [samples] */
+    double holds;                  /* their number */
+    double rounding[2][IMK_AXES_MAX]; /* rms over the holds of what it leaves in a mean */
 } imki_hold_noise;
 
 void imki_hold_noise_find(const imk_test_record *record, size_t count,

@@ -58,8 +58,16 @@ static double smallest_sigma(const imk_model *model, const imk_test_record *reco
     return resolution > 0.0 ? uniform * resolution : 1e-9;
 }
 
+/* What the rounding to steps leaves in the mean of a gyro is the same in all holds, and does not
+ * average out: it counts as often as there are holds. */
+static double add_rounding(double sigma, const imk_static_interval *hold, size_t holds, int axis)
+{
+    const double rounding = hold->rounding[IMK_GYRO][axis];
+    return sqrt(sigma * sigma + ((double)holds - 1.0) * rounding * rounding);
+}
+
 static void set_readings(const imki_procedure_call *call, const imk_static_interval *hold,
-                         const double earth_sigma[3], imk_observation *observation)
+                         size_t holds, const double earth_sigma[3], imk_observation *observation)
 {
     const imk_model *model = &call->calibration->model;
     const imk_test_record *record = call->calibration->record[call->record];
@@ -73,6 +81,8 @@ static void set_readings(const imki_procedure_call *call, const imk_static_inter
             double sigma = hold->sigma[s][i];
             if (!(sigma > 0.0))
                 sigma = smallest_sigma(model, record, s, i);
+            if (s == IMK_GYRO)
+                sigma = add_rounding(sigma, hold, holds, i);
             if (s == IMK_GYRO && i < 3) {
                 const double earth =
                     earth_sigma[i] * fabs(imki_counts_per_unit(model, record, s, i));
@@ -82,6 +92,25 @@ static void set_readings(const imki_procedure_call *call, const imk_static_inter
             observation->sigma[s][i] = sigma;
         }
     }
+}
+
+/* Is rounding most of what the bias of a gyro is uncertain by? */
+static bool is_coarse(const imk_test_record *record, const imki_session_stretches *list,
+                      size_t holds)
+{
+    bool coarse = false;
+    for (int i = 0; i < record->axis_count[IMK_GYRO]; i++) {
+        double all = 0.0, rounding = 0.0;
+        for (size_t k = 0; k < list->count; k++) {
+            const imk_static_interval *hold = &list->stretch[k].summary;
+            if (list->stretch[k].at.turn || !isfinite(hold->sigma[IMK_GYRO][i]))
+                continue;
+            all += hold->sigma[IMK_GYRO][i] * hold->sigma[IMK_GYRO][i];
+            rounding += hold->rounding[IMK_GYRO][i] * hold->rounding[IMK_GYRO][i];
+        }
+        coarse = coarse || (double)holds * rounding > all - rounding;
+    }
+    return coarse;
 }
 
 /* Smallest eigenvalue of the mean outer product of the directions of holds: of axes, the smallest
@@ -115,6 +144,10 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_sessio
         c->model.accel.zero_offset.value[i] = list->zero_offset[i];
     }
     c->frame = IMK_FRAME_REFERENCE;
+    size_t holds = 0;
+    for (size_t k = 0; k < list->count; k++)
+        holds += !list->stretch[k].at.turn;
+    c->gyro_coarse = c->gyro_coarse || is_coarse(c->record[call->record], list, holds);
     for (size_t k = 0; k < list->count; k++) {
         const imki_session_stretch *stretch = &list->stretch[k];
         if (stretch->at.turn)
@@ -135,11 +168,13 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_sessio
         up[stretch->at.axis] = stretch->at.sense;
         observation.force[stretch->at.axis] = stretch->at.sense * c->gravity;
         imki_earth_at_rest(c, up, observation.rate, earth_sigma);
-        set_readings(call, &stretch->summary, earth_sigma, &observation);
+        set_readings(call, &stretch->summary, holds, earth_sigma, &observation);
         (void)imk_calibration_observe(c, &observation);
     }
     call->findings->intervals += list->found;
     call->findings->left_out += list->left_out;
+    call->findings->contradicted += list->contradictions;
+    call->findings->contradicted_at = list->contradicted.at.begin;
     call->findings->spread = spread_of(list);
     return IMK_OK;
 }

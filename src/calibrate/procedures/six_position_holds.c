@@ -147,6 +147,13 @@ static imk_status list_detected(const imk_test_record *record,
 /* ---- faces --------------------------------------------------------------------------------------
  */
 
+static const char *const face_names[FACES] = {"x up", "x down", "y up", "y down", "z up", "z down"};
+
+static int face_number(int axis, int sense)
+{
+    return 2 * axis + (sense < 0);
+}
+
 /* What turns the readings of a hold into a direction. */
 typedef struct yardstick {
     bool known;                /* readings have a unit */
@@ -224,9 +231,20 @@ static bool saturated(const yardstick *y, const imki_session_stretch *hold)
     return false;
 }
 
+static void count_contradiction(imki_session_stretches *list, const imki_session_stretch *hold,
+                                int axis, int sense)
+{
+    if (list->contradictions++ > 0)
+        return;
+    list->contradicted = *hold;
+    list->contradicted.at.axis = axis;
+    list->contradicted.at.sense = sense;
+}
+
 /* Give a hold its face. What the label says stands, unless the readings show another.
  * @return false: it shows none, or the label contradicts, which is counted */
-static bool settle_face(const yardstick *y, imki_session_stretch *hold, size_t *contradictions)
+static bool settle_face(const yardstick *y, imki_session_stretch *hold,
+                        imki_session_stretches *list)
 {
     double u[3];
     const bool seen = direction_of(y, hold, u);
@@ -243,7 +261,7 @@ static bool settle_face(const yardstick *y, imki_session_stretch *hold, size_t *
     const bool plain = seen && fabs(u[axis]) >= face_share;
     imk_ferraris_stretch *at = &hold->at;
     if (plain && ((at->axis >= 0 && at->axis != axis) || (at->sense != 0 && at->sense != sense))) {
-        (*contradictions)++;
+        count_contradiction(list, hold, axis, sense);
         return false;
     }
     if (!plain && (at->axis < 0 || at->sense == 0))
@@ -257,30 +275,34 @@ static bool settle_face(const yardstick *y, imki_session_stretch *hold, size_t *
 
 /* Labels of more than a quarter of the holds say something else than the readings: it is not the
  * odd mistake, but axes that are swapped or turned round, or another meaning of the words. */
-static imk_status contradicted(const char *label, imk_error *error)
+static imk_status contradicted(const imki_session_stretches *list, size_t holds, imk_error *error)
 {
-    return imk_error_set(error, IMK_ERROR_CONFLICT, "section", label,
-                         "label each hold by the axis that reads gravity (x_up where accel_x is "
-                         "largest), or map swapped or inverted axes with --axes");
+    const imk_ferraris_stretch *at = &list->contradicted.at;
+    const imk_status status = imk_error_set(
+        error, IMK_ERROR_CONFLICT, "section", list->contradicted.label,
+        "label each hold by the axis that reads gravity (x_up where accel_x is largest), or, if "
+        "columns are swapped or inverted, map them with --axes");
+    if (error) {
+        error->index = face_number(at->axis, at->sense);
+        error->value = (double)list->contradictions;
+        error->limit = (double)holds;
+    }
+    return status;
 }
 
 static imk_status settle_faces(const yardstick *y, imki_session_stretches *list, imk_error *error)
 {
-    size_t kept = 0, holds = 0, contradictions = 0;
-    const char *first = NULL;
+    size_t kept = 0, holds = 0;
     for (size_t k = 0; k < list->count; k++) {
-        const size_t before = contradictions;
         imki_session_stretch stretch = list->stretch[k];
         holds += !stretch.at.turn;
-        if (stretch.at.turn || settle_face(y, &stretch, &contradictions))
+        if (stretch.at.turn || settle_face(y, &stretch, list))
             list->stretch[kept++] = stretch;
         else
             list->left_out++;
-        if (contradictions > before && !first)
-            first = stretch.label;
     }
     list->count = kept;
-    return 4 * contradictions > holds ? contradicted(first, error) : IMK_OK;
+    return 4 * list->contradictions > holds ? contradicted(list, holds, error) : IMK_OK;
 }
 
 static imk_status yardstick_of(yardstick *y, const imk_test_record *record, const imk_model *model,
@@ -346,13 +368,12 @@ imk_status imki_stretches_find(const imk_test_record *record,
 
 imk_status imki_faces_complete(const imki_session_stretches *list, imk_error *error)
 {
-    static const char *const names[FACES] = {"x up", "x down", "y up", "y down", "z up", "z down"};
     bool seen[FACES] = {false};
     int faces = 0;
     for (size_t k = 0; k < list->count; k++) {
         const imk_ferraris_stretch *at = &list->stretch[k].at;
         if (!at->turn)
-            seen[2 * at->axis + (at->sense < 0)] = true;
+            seen[face_number(at->axis, at->sense)] = true;
     }
     char missing[160] = "add a hold with ";
     bool first = true;
@@ -361,10 +382,17 @@ imk_status imki_faces_complete(const imki_session_stretches *list, imk_error *er
         if (seen[f])
             continue;
         imki_append_text(missing, sizeof missing, first ? "" : ", ");
-        imki_append_text(missing, sizeof missing, names[f]);
+        imki_append_text(missing, sizeof missing, face_names[f]);
         first = false;
     }
     if (faces == FACES)
         return IMK_OK;
+    if (list->contradictions > 0) {
+        const imk_ferraris_stretch *at = &list->contradicted.at;
+        imki_append_text(missing, sizeof missing, ", or correct the label ");
+        imki_append_text(missing, sizeof missing, list->contradicted.label);
+        imki_append_text(missing, sizeof missing, " of a hold that reads ");
+        imki_append_text(missing, sizeof missing, face_names[face_number(at->axis, at->sense)]);
+    }
     return imki_refuse(error, IMK_ERROR_TOO_SHORT, "hold", faces, FACES, missing);
 }

@@ -38,6 +38,8 @@ typedef struct imki_session_stretches {
     size_t found, left_out; /* stretches */
     double sensitivity[3];  /* of accelerometers in counts, found from the holds; 0: was known */
     double zero_offset[3];
+    size_t contradictions;             /* holds whose label says another face than the readings */
+    imki_session_stretch contradicted; /* the first, with the face of the readings */
 } imki_session_stretches;
 
 /* Bytes for the list and the detection. */

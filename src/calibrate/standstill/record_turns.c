@@ -257,6 +257,16 @@ static explanation explain_all(const imki_diagnostic_call *call, turns *t, size_
     return best;
 }
 
+/* A turn that is off by nearly half a turn with other axes tells these from the axes as they are.
+ */
+static const double SEEN = 0.8;
+
+/* Axes that are changed would explain the few turns that do not fit, and all others as well. */
+static bool is_odd(const turns *t, double as_is, const explanation *e)
+{
+    return !(e->classes & 1) && as_is - e->cost >= SEEN && e->cost <= 0.1 * (double)t->count;
+}
+
 /* Better than the log as it stands, by enough, and good. */
 static bool explains(const turns *t, double as_is, double cost)
 {
@@ -320,6 +330,40 @@ static bool has_both_triads(const imki_diagnostic_call *call)
     return true;
 }
 
+/* Too few turns to be sure of it: a doubt. */
+static void add_odd_turn(const imki_diagnostic_call *call, turns *t, double as_is, double missed,
+                         imki_diagnostic_list *list)
+{
+    const explanation e = explain(call, t, 1.0);
+    if (!is_odd(t, as_is, &e))
+        return;
+    imk_diagnostic_finding f = axes_finding(e.classes, missed);
+    f.kind = IMK_DIAGNOSTIC_ODD_TURN;
+    imki_diagnostic_add(list, f);
+}
+
+uint64_t imk_record_axes_unseen(const imk_test_record *record, size_t interval_count,
+                                const imk_static_interval *interval, const imk_model *model)
+{
+    const imki_diagnostic_call call = {
+        .record = record, .interval_count = interval_count, .interval = interval, .model = model};
+    turns t;
+    uint64_t unseen = 0;
+    if (!record || !interval || !has_both_triads(&call))
+        return UINT64_MAX;
+    collect_turns(&call, &t);
+    if (t.count < TURNS_MIN)
+        return UINT64_MAX;
+    integrate_all(&call, &t, 1.0);
+    const double as_is = cost_of(&t, 0);
+    if (as_is > LEFT_OF_ALL * (double)t.count)
+        return UINT64_MAX;
+    for (int index = 1; index < IMK_SIGNED_AXES; index++)
+        if (cost_of(&t, index) - as_is < SEEN)
+            unseen |= UINT64_C(1) << index;
+    return unseen;
+}
+
 void imki_diagnostic_turns(const imki_diagnostic_call *call, imki_diagnostic_list *list)
 {
     static const double degree = 0.017453292519943295;
@@ -333,8 +377,11 @@ void imki_diagnostic_turns(const imki_diagnostic_call *call, imki_diagnostic_lis
         return;
     integrate_all(call, &t, 1.0);
     const double as_is = cost_of(&t, 0), missed = missed_as_is(&t);
-    if (as_is < GAIN)
+    if (as_is < GAIN) {
+        if (as_is >= SEEN)
+            add_odd_turn(call, &t, as_is, missed, list);
         return;
+    }
     const explanation best = explain_all(call, &t, sizeof factor / sizeof *factor, factor);
     const explanation scale = explain_scale(call, &t);
     const bool is_scale = scale.cost < best.cost - MARGIN;

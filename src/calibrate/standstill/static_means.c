@@ -22,6 +22,7 @@ imk_static_interval imki_static_mean(const imk_test_record *record, size_t row)
                                             ? record->mean_sigma[sensor][i][row]
                                             : (double)NAN;
             interval.scatter[sensor][i] = (double)NAN;
+            interval.rounding[sensor][i] = 0.0;
         }
     return interval;
 }

@@ -9,7 +9,8 @@
  *
  *     q/sqrt(12) exp(-2 pi^2 sigma^2/q^2)                                       [WIDROW2008]
  *
- * (rms over where the value lies within a step, at sigma = 0 exactly), which is added. */
+ * (rms over where the value lies within a step, at sigma = 0 exactly), which is added. Of readings
+ * that only take two neighbouring values the noise is not known: it is taken for 0. */
 #include "imukit/elementary.h"
 #include "static_internal.h"
 
@@ -118,11 +119,54 @@ static double step_of(const imk_test_record *record, int sensor, int axis, size_
     return step;
 }
 
+/* The step of a stretch of one value. Zeros that are further from all others than these are from
+ * each other are in a dead band, which is twice as wide; but rates that begin all at once, as in
+ * logs without noise, are no such band. */
+static double step_of_one_value(const imk_test_record *record, int sensor, int axis, double step,
+                                const imk_static_interval *interval)
+{
+    const double *x = record->reading[sensor][axis], value = x[interval->begin];
+    const size_t from = interval->begin > NEIGHBOURHOOD ? interval->begin - NEIGHBOURHOOD : 0;
+    const size_t to = record->count - interval->end > NEIGHBOURHOOD ? interval->end + NEIGHBOURHOOD
+                                                                    : record->count;
+    double nearest = (double)INFINITY, farthest = 0.0;
+    for (size_t k = from; k < to; k++) {
+        const double distance = fabs(x[k] - value);
+        if (distance > 0.0 && distance < nearest)
+            nearest = distance;
+        if (distance > farthest)
+            farthest = distance;
+    }
+    const bool dead_band = value == 0.0 && nearest > 2.0 * step && nearest < 0.5 * farthest;
+    return dead_band ? 2.0 * nearest : step;
+}
+
+/* Two neighbouring values and no third one. */
+static bool is_of_two_values(const double *x, size_t count, double step)
+{
+    double low = (double)INFINITY, high = -(double)INFINITY;
+    for (size_t k = 0; k < count; k++)
+        if (isfinite(x[k])) {
+            low = x[k] < low ? x[k] : low;
+            high = x[k] > high ? x[k] : high;
+        }
+    return high - low < 1.5 * step;
+}
+
+/* rms of the error that stays in a mean of rounded readings. */
+static double rounding_of(double variance, double step, bool two_values)
+{
+    static const double two_pi_squared = 19.739208802178716;
+    const double before = two_values ? 0.0 : variance - step * step / 12.0;
+    const double smooth = before > 0.0 ? before / (step * step) : 0.0;
+    return step / sqrt(12.0) * imk_exp(-two_pi_squared * smooth);
+}
+
 static void summarise_axis(const imk_test_record *record, int sensor, int axis, double step,
                            imk_static_interval *interval)
 {
-    static const double two_pi_squared = 19.739208802178716;
     const double *x = record->reading[sensor][axis];
+    double rounding = 0.0;
     batches b;
     fill_batches(x + interval->begin, interval->end - interval->begin, &b);
     if (b.count == 0)
@@ -142,11 +186,14 @@ static void summarise_axis(const imk_test_record *record, int sensor, int axis, 
     if (b.count > 1)
         square = between / (double)b.count * inefficiency(b.mean, b.count) / (double)(b.count - 1);
     if (step > 0.0) {
-        const double before = variance - step * step / 12.0;
-        const double smooth = before > 0.0 ? before / (step * step) : 0.0;
+        if (variance == 0.0)
+            step = step_of_one_value(record, sensor, axis, step, interval);
         const double quantization = step * step / 12.0;
+        rounding = rounding_of(
+            variance, step,
+            is_of_two_values(x + interval->begin, interval->end - interval->begin, step));
         square = square > quantization / n ? square : quantization / n;
-        square += quantization * imk_exp(-2.0 * two_pi_squared * smooth);
+        square += rounding * rounding;
     } else {
         /* One value throughout the log: known to the digits it is given with, say six. */
         square += 1e-12 * (mean * mean + 1e-12);
@@ -154,6 +201,7 @@ static void summarise_axis(const imk_test_record *record, int sensor, int axis, 
     interval->mean[sensor][axis] = mean;
     interval->scatter[sensor][axis] = sqrt(variance);
     interval->sigma[sensor][axis] = sqrt(square);
+    interval->rounding[sensor][axis] = rounding;
 }
 
 static double time_of(const imk_test_record *record, size_t k)

@@ -74,7 +74,21 @@ static void diagnose(const imk_calibrate_log *b, imk_calibrate_record *log)
     log->diagnostic_count = imk_record_diagnostics(
         &log->record, &log->stationary, log->interval_count, log->interval, b->calibration->gravity,
         &b->calibration->model, IMK_CALIBRATE_DIAGNOSTICS_MAX, log->diagnostic);
+    log->axes_unseen = imk_record_axes_unseen(&log->record, log->interval_count, log->interval,
+                                              &b->calibration->model);
     diagnostics_of_named_holds(log);
+}
+
+/* Rests that the test lacks. Sections say by themselves what a rest is. */
+static void find_lost(const imk_calibrate_log *b, imk_calibrate_record *log)
+{
+    const bool by_sections = log->record.section && (log->settings.labelled_only ||
+                                                     log->procedure != IMK_PROCEDURE_MULTIPOSITION);
+    if (log->procedure > IMK_PROCEDURE_SIXPOSITION || by_sections)
+        return;
+    log->lost_count = imk_static_lost_rests(
+        &log->record, &log->settings.stationary, &b->calibration->model, &log->stationary,
+        log->interval_count, log->interval, IMK_CALIBRATE_LOST_MAX, log->lost);
 }
 
 /* Where it stands still: for the diagnostics, the table of poses and the plot. */
@@ -93,10 +107,12 @@ static imk_status detect(imk_calibrate_log *b, imk_calibrate_record *log, imk_er
     if (status == IMK_OK) {
         keep_labelled(log);
         diagnose(b, log);
+        find_lost(b, log);
         return IMK_OK;
     }
     /* A log too short for holds may still do for a table. */
     log->interval_count = 0;
+    log->axes_unseen = UINT64_MAX;
     log->stationary.window = 0;
     log->activity = NULL;
     return imk_procedure_is_known(log->procedure) && status != IMK_ERROR_MEMORY ? IMK_OK : status;

@@ -72,7 +72,7 @@ static void add_mending(const imk_axes_mending *m, imki_text *to)
         describe(&accel, to);
 }
 
-size_t imki_axes_text(uint64_t classes, char *text, size_t size)
+size_t imki_axes_text(uint64_t classes, bool certain, char *text, size_t size)
 {
     imk_axes_mending mending[IMK_AXES_MENDINGS_MAX];
     imki_text list = {0};
@@ -89,11 +89,14 @@ size_t imki_axes_text(uint64_t classes, char *text, size_t size)
         left_handed = left_handed || is_left_handed(&mending[k]);
     }
     snprintf(text, size,
-             "signs or order of the axes are wrong: the turns of the gyros do not lead from one "
-             "attitude of the accelerometers to the next. %s explains the log: %s. %sHold the "
+             "signs or order of the axes %s. %s explains the log: %s. %sHold the "
              "unit with an axis up: its accelerometer must read +9.8 m/s^2. Turn it "
              "counter-clockwise as seen from the tip of an axis: its gyro must read positive. Then "
              "correct the columns (names: in the header or with --columns; signs: in the values)",
+             certain ? "are wrong: the turns of the gyros do not lead from one attitude of the "
+                       "accelerometers to the next"
+                     : "may be wrong: some turns of the gyros do not lead from one attitude of the "
+                       "accelerometers to the next, and too few turns tell more",
              count > 1 ? "Each of these" : "This",
              list.bytes ? list.bytes : "several mistakes at once",
              count > 1 ? "The log does not show which it is. " : "");

@@ -237,6 +237,88 @@ static void add_thermal(imk_verdict *v, const imk_calibrate_record *log)
                    log->path));
 }
 
+/* Mean squares over the rests of a log: of what rounding leaves in a mean, as the estimate is told
+ * it, and of all that a mean is uncertain by; in the unit of the readings. */
+static double rounding_square(const imk_calibrate_record *log, int sensor, int axis)
+{
+    double sum = 0;
+    for (size_t k = 0; k < log->interval_count; k++)
+        sum += pow(log->interval[k].rounding[sensor][axis], 2);
+    /* The same in all rests of a gyro: it does not average out. */
+    return sensor == IMK_GYRO || log->interval_count == 0 ? sum : sum / (double)log->interval_count;
+}
+
+static double sigma_square(const imk_calibrate_log *b, const imk_calibrate_record *log, int sensor,
+                           int axis)
+{
+    const imk_procedure_findings *f = &log->findings;
+    double sum = 0, count = 0;
+    for (size_t k = f->first_observation; k < f->first_observation + f->observations; k++)
+        if (isfinite(b->calibration->observation[k].reading[sensor][axis])) {
+            sum += pow(b->calibration->observation[k].sigma[sensor][axis], 2);
+            count++;
+        }
+    return count > 0 ? sum / count : 0;
+}
+
+/* Steps that are coarser than the noise: what rounding leaves in the means is most of what they are
+ * uncertain by, and it is an error that does not look random. */
+static void add_coarse(const imk_calibrate_log *b, const imk_calibrate_record *log, imk_verdict *v)
+{
+    const double share = 0.5;
+    imki_text names = {0};
+    if (!b->result || log->record.means || log->procedure > IMK_PROCEDURE_FERRARIS)
+        return;
+    for (int sensor = 0; sensor < 2; sensor++)
+        for (int i = 0; i < log->record.axis_count[sensor]; i++) {
+            const double square = rounding_square(log, sensor, i);
+            if (square > 0 && square > share * sigma_square(b, log, sensor, i))
+                imki_list_item(&names, "%s_%c", imki_sensor_keys[sensor],
+                               imk_axis_letter(log->body_axis[sensor][i]));
+        }
+    if (names.bytes)
+        add(v, imki_calibrate_say(
+                   IMK_FINDING_WARNING, "coarse",
+                   "%.150s: the readings of %s are rounded to steps coarser than their noise, or "
+                   "are cut off around zero: their means at rest are wrong by up to half a step, "
+                   "which more samples do not improve; log more digits or choose a smaller range",
+                   log->path, names.bytes));
+    free(names.bytes);
+}
+
+/* Few labels that the readings contradict: their holds are left out. */
+static void add_contradicted(const imk_calibrate_record *log, imk_verdict *v)
+{
+    const imk_procedure_findings *f = &log->findings;
+    const char *label = f->contradicted ? imki_label_of(&log->record, f->contradicted_at) : NULL;
+    if (label)
+        add(v, imki_calibrate_say(
+                   IMK_FINDING_WARNING, "wrong_label",
+                   "%.150s: the label %.60s names another face than the accelerometers show, and "
+                   "the hold is left out (%zu such label%s): correct the labels",
+                   log->path, label, f->contradicted, f->contradicted == 1 ? "" : "s"));
+}
+
+/* Rests that were not taken: what is estimated holds without them, but a log that lacks many of its
+ * rests is not the one that was meant. */
+static void add_lost(const imk_calibrate_record *log, imk_verdict *v)
+{
+    const double many = 0.2;
+    char list[700];
+    const double all = (double)(log->lost_count + log->interval_count);
+    const bool one = log->lost_count == 1;
+    if (log->lost_count == 0)
+        return;
+    imki_lost_text(log, list, sizeof list);
+    add(v, imki_calibrate_say((double)log->lost_count > many * all ? IMK_FINDING_WARNING
+                                                                   : IMK_FINDING_NOTE,
+                              "lost_rests",
+                              "%.150s: %zu stretch%s between turns, of %g, look%s like %s, but "
+                              "cannot be used: %s",
+                              log->path, log->lost_count, one ? "" : "es", all, one ? "s" : "",
+                              one ? "a rest" : "rests", list));
+}
+
 /* "gyro.nonlinearity.k2" of gyro.nonlinearity.k2.x. */
 static void term_of(imk_model_parameter parameter, char term[IMK_MODEL_PARAMETER_NAME])
 {
@@ -412,6 +494,9 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
         }
         add_undetermined(b, log, &v);
         add_means(b, log, &v);
+        add_coarse(b, log, &v);
+        add_lost(log, &v);
+        add_contradicted(log, &v);
         add_thermal(&v, log);
         imki_turns_verdict(b, log, &v);
     }

@@ -44,12 +44,29 @@ static size_t few_temperatures(const message *to, const imk_calibrate_record *lo
                log->path, log->record.count, cold, none, error->limit);
 }
 
+/* Holds are missing, and some were there that were not taken. */
+static size_t without_lost(const message *to, const imk_calibrate_record *log,
+                           const imk_error *error)
+{
+    char list[700];
+    imki_lost_text(log, list, sizeof list);
+    return say(to,
+               "%s: %s needs at least %g holds, found %g; %zu more look%s like %s, but cannot be "
+               "used: %s; repeat %s%s%s",
+               log->path, imk_procedure_name(log->procedure), error->limit, error->value,
+               log->lost_count, log->lost_count == 1 ? "s" : "",
+               log->lost_count == 1 ? "one" : "holds", list, log->lost_count == 1 ? "it" : "them",
+               error->expected[0] ? ", or " : "", error->expected);
+}
+
 static size_t too_short(const message *to, const imk_calibrate_record *log, const imk_error *error)
 {
     static const char *const things[] = {"hold", "turn", "step"};
     static const char *const many[] = {"holds", "turns", "steps of constant reference"};
     const char *name = imk_procedure_name(log->procedure);
     const char *due = error->expected;
+    if (strcmp(error->field, "hold") == 0 && log->lost_count > 0)
+        return without_lost(to, log, error);
     for (size_t k = 0; k < 3; k++)
         if (strcmp(error->field, things[k]) == 0)
             return say(to, "%s: %s needs at least %g %s, found %g%s%s", log->path, name,
@@ -161,6 +178,19 @@ static size_t not_following(const message *to, const imk_calibrate_record *log,
                log->path, error->field, imk_axis_letter(error->index), error->value);
 }
 
+/* Labels of faces that the readings do not show. */
+static size_t wrong_labels(const message *to, const imk_calibrate_record *log,
+                           const imk_error *error)
+{
+    const bool up = error->index % 2 == 0;
+    const char axis = imk_axis_letter(error->index / 2);
+    return say(to,
+               "%s: the label %s contradicts the readings (%g of %g labels do): accel_%c reads "
+               "gravity there, with a %s sign (%c is %s); %s",
+               log->path, error->found, error->value, error->limit, axis,
+               up ? "positive" : "negative", axis, up ? "up" : "down", error->expected);
+}
+
 static size_t of_record(const message *to, const imk_calibrate_log *b,
                         const imk_calibrate_record *log, const imk_error *error)
 {
@@ -176,6 +206,8 @@ static size_t of_record(const message *to, const imk_calibrate_log *b,
     case IMK_ERROR_NOT_FINITE:
         return not_finite(to, log);
     case IMK_ERROR_CONFLICT:
+        if (strcmp(error->field, "section") == 0 && error->index >= 0)
+            return wrong_labels(to, log, error);
         return not_following(to, log, error);
     default:
         return 0;

@@ -17,6 +17,8 @@ static const double factor_tolerance = 0.12;
 
 /* Scale factors further from 1 are no sensor's. */
 static const double scale_doubted = 0.1;
+/* The same of a solution, in which the sensor may be one of the few: a doubt from here on. */
+static const double scale_rare = 0.08;
 /* Factor by which readings are off that are not those of what they are said to be. */
 static const double scale_useless = 1.5;
 
@@ -183,7 +185,8 @@ static imki_calibrate_message scale(const imk_calibrate_log *b, const imk_diagno
     static const char *const codes[2] = {"gyro_scale", "accel_scale"};
     imki_calibrate_message m = {.level = IMK_FINDING_FAILURE, .code = codes[d->sensor == 1]};
     if (b->result && d->value > 1 / scale_useless && d->value < scale_useless)
-        m.level = d->limit < scale_doubted ? IMK_FINDING_NOTE : IMK_FINDING_WARNING;
+        m.level = d->limit < scale_doubted && fabs(d->value - 1) < scale_rare ? IMK_FINDING_NOTE
+                                                                              : IMK_FINDING_WARNING;
     imki_scale_text(b, d, m.text, sizeof m.text);
     return m;
 }
@@ -252,7 +255,7 @@ static bool mended(const imk_diagnostic_finding *d, const char *code,
     *message = (imki_calibrate_message){.level = IMK_FINDING_FAILURE, .code = code};
     if (count == 0 || (count == 1 && d->sensor >= 0))
         return false;
-    (void)imki_axes_text(d->classes, message->text, sizeof message->text);
+    (void)imki_axes_text(d->classes, true, message->text, sizeof message->text);
     return true;
 }
 
@@ -294,6 +297,13 @@ static imki_calibrate_message left_handed(const imk_diagnostic_finding *d)
         "and the turns of the gyros lead from one attitude of the accelerometers to the next only "
         "with this sign changed; change the sign of this column in the log",
         sensor, imk_axis_letter(d->axis));
+}
+
+static imki_calibrate_message odd_turn(const imk_diagnostic_finding *d)
+{
+    imki_calibrate_message message = {.level = IMK_FINDING_WARNING, .code = "odd_turn"};
+    (void)imki_axes_text(d->classes, false, message.text, sizeof message.text);
+    return message;
 }
 
 imki_calibrate_message imki_message_on_log(const imk_calibrate_log *b,
@@ -351,6 +361,8 @@ imki_calibrate_message imki_message_on_log(const imk_calibrate_log *b,
         return swapped(d);
     case IMK_DIAGNOSTIC_LEFT_HANDED:
         return left_handed(d);
+    case IMK_DIAGNOSTIC_ODD_TURN:
+        return odd_turn(d);
     case IMK_DIAGNOSTIC_TIME_UNIT:
         return time_unit(log, d->value);
     case IMK_DIAGNOSTIC_SCALE:

@@ -17,9 +17,9 @@
  */
 bool imki_calibrate_useless(const imk_calibrate_log *b, const imk_calibrate_record *log, char *text,
                             size_t size);
-/* calibrate_axes_text.c: the mendings of axes (imk_axes_mendings()) and what decides. @return their
- * number */
-size_t imki_axes_text(uint64_t classes, char *text, size_t size);
+/* calibrate_axes_text.c: the mendings of axes (imk_axes_mendings()) and what decides; certain:
+ * enough turns show it. @return their number */
+size_t imki_axes_text(uint64_t classes, bool certain, char *text, size_t size);
 /* Gyros that read full turns with the opposite sign. @return their number */
 size_t imki_turns_text(const imk_calibrate_log *b, char *text, size_t size);
 /* calibrate_scale_text.c: a scale that no sensor has; and what `ratio` of readings to input looks
@@ -28,6 +28,9 @@ void imki_scale_text(const imk_calibrate_log *b, const imk_diagnostic_finding *d
                      size_t size);
 void imki_scale_causes(const imk_calibrate_log *b, int sensor, double ratio, bool all_axes,
                        imki_text *to);
+/* calibrate_lost_text.c: stretches of a log that look like rests and are not used, with times and
+ * reasons. "": there is none */
+void imki_lost_text(const imk_calibrate_record *log, char *text, size_t size);
 /* calibrate_untestable.c: a note of what another sound unit would show as well. */
 void imki_untestable(const imk_calibrate_log *b, imk_verdict *verdict);
 /* calibrate_words.c: nobody stated sigmas for the readings of this group, the scatter of its

@@ -51,16 +51,48 @@ static void add_of_gyros(const imk_calibrate_log *b, imki_text *list)
                        "that which its gyro reads)");
 }
 
-/* Three gyros that are turned between the attitudes show whether axes are right-handed. */
-static bool has_turns(const imk_calibrate_log *b)
+/* Mistakes about the axes that no turn of any record would show. */
+static uint64_t axes_unseen(const imk_calibrate_log *b)
 {
-    for (size_t k = 0; k < b->count; k++) {
-        const imk_calibrate_record *log = &b->record[k];
-        if (log->procedure <= IMK_PROCEDURE_FERRARIS && !log->record.means &&
-            log->record.axis_count[IMK_GYRO] >= 3 && log->record.axis_count[IMK_ACCEL] >= 3)
-            return true;
+    uint64_t unseen = UINT64_MAX;
+    for (size_t k = 0; k < b->count; k++)
+        if (b->record[k].procedure <= IMK_PROCEDURE_FERRARIS)
+            unseen &= b->record[k].axes_unseen;
+    return unseen;
+}
+
+/* Single signs; that of an accelerometer is as good as those of both other gyros. */
+static void add_signs(uint64_t unseen, imki_text *list)
+{
+    static const int of_gyro[3] = {1, 2, 4}, of_accel[3] = {6, 5, 3};
+    imki_text names = {0};
+    int count = 0;
+    for (int i = 0; i < 6; i++)
+        count += unseen >> (i < 3 ? of_gyro[i] : of_accel[i - 3]) & 1;
+    for (int i = 0; i < 3; i++)
+        if (unseen >> of_gyro[i] & 1)
+            imki_list_item(&names, "gyro_%c", imk_axis_letter(i));
+    for (int i = 0; i < 3; i++)
+        if (unseen >> of_accel[i] & 1)
+            imki_list_item(&names, "accel_%c", imk_axis_letter(i));
+    if (names.bytes)
+        imki_text_add(list, "; the opposite sign of %s%s (no turn tells it)",
+                      count > 1 ? "one of " : "", names.bytes);
+    free(names.bytes);
+}
+
+static void add_of_axes(const imk_calibrate_log *b, imki_text *list)
+{
+    const uint64_t unseen = axes_unseen(b), signs = 0xff;
+    if (unseen == UINT64_MAX) {
+        add_item(list, "an accelerometer with the opposite sign, or several (the attitudes are "
+                       "then other ones); axes that are named x, y, z in another order");
+        return;
     }
-    return false;
+    add_item(list, "all accelerometers with the opposite sign");
+    add_signs(unseen, list);
+    add_item(list, (unseen & ~signs) ? "axes that are named x, y, z in another order"
+                                     : "axes that are named x, y, z in another right-handed order");
 }
 
 static void add_of_gravity(const imk_calibrate_log *b, imki_text *list)
@@ -72,14 +104,8 @@ static void add_of_gravity(const imk_calibrate_log *b, imki_text *list)
     if (has(b, IMK_PROCEDURE_RATE_TABLE, IMK_PROCEDURE_SPIN, false))
         return;
     if (has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_MULTIPOSITION, false) ||
-        has(b, IMK_PROCEDURE_SIXPOSITION, IMK_PROCEDURE_FERRARIS, true)) {
-        if (has_turns(b))
-            add_item(list, "all accelerometers with the opposite sign; axes that are named x, y, z "
-                           "in another right-handed order");
-        else
-            add_item(list, "an accelerometer with the opposite sign, or several (the attitudes are "
-                           "then other ones); axes that are named x, y, z in another order");
-    }
+        has(b, IMK_PROCEDURE_SIXPOSITION, IMK_PROCEDURE_FERRARIS, true))
+        add_of_axes(b, list);
 }
 
 /* Where each attitude was taken once, the solution explains its readings whatever they are. */
@@ -88,8 +114,9 @@ static void add_of_single_attitudes(const imk_calibrate_log *b, imki_text *list)
     const double least_freedom = 3;
     if (b->result && is_estimated(b, 1) &&
         b->result->group[IMK_GROUP_ACCEL].degrees_of_freedom < least_freedom)
-        add_item(list, "errors of the accelerometers that stay for a whole attitude, such as a bias "
-                       "that drifts from one to the next (take each attitude again)");
+        add_item(list,
+                 "errors of the accelerometers that stay for a whole attitude, such as a bias "
+                 "that drifts from one to the next (take each attitude again)");
 }
 
 /* The sign of the dip tells which way round a magnetometer is, where it is known. */
