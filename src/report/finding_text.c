@@ -43,6 +43,9 @@ static const struct message {
     {"unused_columns", "not used in {record}, although like {other}: {name}; " NAME_IT},
     {"unused_axis",
      "{record}: an axis is missing, and {name}, which looks like {other}, is not used; " NAME_IT},
+    {"unused_sensor", "{record}: no column is read as {other}; {name} may be that: " NAME_IT},
+    {"unknown_channels", "no column is read as one of a gyro or an accelerometer: the columns are "
+                         "analysed as they are, and belong to no model"},
     {"one_row", "there is only one row; record minutes to hours at rest"},
     {"no_interval", "the time column does not increase, so the sampling rate is unknown; leave the "
                     "column out with --columns and state the rate, such as --rate 100Hz"},

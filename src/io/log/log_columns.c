@@ -268,6 +268,24 @@ static imk_status check_settings(const imki_log_layout_read *layout,
     return IMK_OK;
 }
 
+/* "tempo [s]" is a time by its unit. */
+static imk_status refuse_without_time(const imki_log_layout_read *layout, imk_error *error)
+{
+    char next[160] = "add --rate 100Hz (samples per second)";
+    for (size_t i = 0; i < layout->column_count; i++) {
+        const imk_log_column *c = &layout->column[i];
+        if (c->quantity == IMK_QUANTITY_OTHER &&
+            imk_dimension_equal(c->unit.dimension, imk_unit_of("s").dimension)) {
+            snprintf(next, sizeof next,
+                     "add --rate 100Hz (samples per second); if %.40s is the time, name it so "
+                     "with --columns, with a name for each column",
+                     c->name);
+            break;
+        }
+    }
+    return imk_error_set(error, IMK_ERROR_RATE_MISSING, "time", "the log has no time column", next);
+}
+
 /* Is any column of use? Is the time known? */
 static imk_status check_layout(const imki_log_layout_read *layout, const imk_log_settings *settings,
                                imk_error *error)
@@ -280,10 +298,8 @@ static imk_status check_layout(const imki_log_layout_read *layout, const imk_log
             error, IMK_ERROR_COLUMN, layout->column[0].name, "no column has a known name",
             "known are time, gyro_x, dtheta_x, accel_x, dvel_x, mag_x, temperature; add "
             "--columns with a name for each column (- skips a column)");
-    if (layout->time_column < 0 && settings->rate == 0.0)
-        return imk_error_set(error, IMK_ERROR_RATE_MISSING, "time", "the log has no time column",
-                             "add --rate 100Hz (samples per second)");
-    return IMK_OK;
+    return layout->time_column < 0 && settings->rate == 0.0 ? refuse_without_time(layout, error)
+                                                            : IMK_OK;
 }
 
 static imk_status add_cell(imki_log_layout_read *layout, size_t cell, imki_log_piece name,

@@ -62,6 +62,8 @@ static const struct words {
     {"stamps:held", "rows repeat the samples of a slower sensor", NULL},
     {"stamps:rate_differs", "--rate is not the rate of the time column", NULL},
     {"unused_axis", "an axis is missing, and a column that looks like it is not used", NULL},
+    {"unused_sensor", "a sensor that seems to be in the log is not read", NULL},
+    {"unknown_channels", "no column is read as one of a gyro or an accelerometer", NULL},
     {"copy", "a column is the copy of another", NULL},
     {"runs_differ", "the logs do not have the same noise", NULL},
     {"outliers", NULL, "Outliers, left out: %s."},
