@@ -148,6 +148,72 @@ static void test_standing_still(void **state)
     sweep();
 }
 
+/* A column of another unit or another place: its white noise is unlike that of its triad. */
+static void test_axis_of_another_unit(void **state)
+{
+    (void)state;
+    make_log("$5 /= 9.80665");
+    identify_log("");
+    check_first("Usable with care: the white noise of accel_x is 9.");
+    check_contains(out, "times smaller than that of the other two axes, as if it were in g.", out);
+    make_log("$3 *= 3.141592653589793 / 180");
+    identify_log("");
+    check_contains(out, "times smaller than that of the other two axes, as if it were in rad/s.",
+                   out);
+    make_log("z = $4; $4 = $6; $6 = z");
+    identify_log("--json");
+    check_contains(out, "the white noise of gyro_z is", out);
+    check_contains(out, "the white noise of accel_y is", out);
+    check_contains(out, "\"axis_differs\"", out);
+    make_log("$4 *= 3");
+    identify_log("");
+    assert_null(strstr(out, "the white noise of"));
+    sweep();
+}
+
+static void test_numbers_of_no_gyro(void **state)
+{
+    (void)state;
+    make_log("for (c = 2; c < 5; c++) $c *= 57.3");
+    identify_log("");
+    check_first("Usable with care: the numbers of the gyros are no gyro's at rest: a wrong unit");
+    make_log("$3 += 40");
+    identify_log("");
+    check_first("Usable with care: the numbers of gyro_y are no gyro's at rest");
+    make_log("for (c = 2; c < 5; c++) $c = 9 * $c + 20");
+    identify_log("");
+    assert_null(strstr(out, "no gyro's"));
+    sweep();
+}
+
+/* What no log can show is said beside every verdict, and only what applies. */
+static void test_what_cannot_be_seen(void **state)
+{
+    (void)state;
+    const char *limits =
+        "\nCannot be seen in a log: a wrong unit or rate of the time; a wrong unit "
+        "or range of the gyros; accelerometer scales off by up to 5 %.\n";
+    make_log("");
+    identify_log("--strict");
+    check_contains(out, limits, "limits");
+    identify_log("--json");
+    check_contains(out, "\"not_testable\"", "code");
+    assert_int_equal(run("cut -d, -f2-5 log.csv > part.csv && $I identify part.csv --rate 20Hz"),
+                     0);
+    check_contains(out,
+                   "a wrong --rate; a wrong unit or range of the gyros; a wrong unit of the "
+                   "accelerometers.\n",
+                   "of a part");
+    assert_int_equal(run("cut -d, -f1,5- log.csv > part.csv && $I identify part.csv"), 0);
+    check_contains(out, "time; accelerometer scales", "without gyros");
+    /* It stays where there is no room for all notes. */
+    make_log("for (c = 2; c <= 7; c++) $c += (t > 450) + sin(6.2831853 * 2.7 * t) / 2; if (NR % "
+             "4001 == 0) $2 += 10; if (NR % 300 == 0) next");
+    identify_log("");
+    check_contains(out, limits, "limits");
+    sweep();
+}
+
 /* What is suggested next succeeds: white noise alone says nothing of a grade. */
 static void next_lines_succeed(void **state)
 {
@@ -172,6 +238,9 @@ int main(void)
                                        cmocka_unit_test(test_vibration),
                                        cmocka_unit_test(test_length),
                                        cmocka_unit_test(test_filter_of_the_driver),
-                                       cmocka_unit_test(test_standing_still)};
+                                       cmocka_unit_test(test_standing_still),
+                                       cmocka_unit_test(test_axis_of_another_unit),
+                                       cmocka_unit_test(test_numbers_of_no_gyro),
+                                       cmocka_unit_test(test_what_cannot_be_seen)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

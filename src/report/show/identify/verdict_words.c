@@ -64,6 +64,8 @@ static const struct words {
     {"unused_axis", "an axis is missing, and a column that looks like it is not used", NULL},
     {"unused_sensor", "a sensor that seems to be in the log is not read", NULL},
     {"unknown_channels", "no column is read as one of a gyro or an accelerometer", NULL},
+    {"gyro_size", "the numbers of %s are no gyro's at rest: a wrong unit, or the sensor turned",
+     "Numbers that no gyro at rest has: %s."},
     {"copy", "a column is the copy of another", NULL},
     {"runs_differ", "the logs do not have the same noise", NULL},
     {"outliers", NULL, "Outliers, left out: %s."},
@@ -261,9 +263,25 @@ static size_t count_words(const char *text)
     return count;
 }
 
+/* What no log can show is never left out: it belongs to every all-clear. */
+static bool is_of_limits(const imk_message *m)
+{
+    return strcmp(m->code, "not_testable") == 0;
+}
+
+static size_t words_of_limits(const imk_verdict *v)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < v->count; k++) {
+        const imk_message *m = &v->message[k];
+        count += is_of_limits(m) ? count_words(m->brief ? m->brief : m->text) : 0;
+    }
+    return count;
+}
+
 void imki_verdict_briefly(const imk_verdict *v, imk_result *result)
 {
-    size_t used = count_words(imk_identify_sentence(v)), left = 0;
+    size_t used = count_words(imk_identify_sentence(v)) + words_of_limits(v), left = 0;
     bool more = false;
     for (size_t k = 0; k < v->count; k++) {
         const imk_message *m = &v->message[k];
@@ -271,8 +289,9 @@ void imki_verdict_briefly(const imk_verdict *v, imk_result *result)
         if (strcmp(m->code, "good") == 0 || (m->level >= IMK_FINDING_WARNING && !m->brief))
             continue;
         more = more || m->brief != NULL;
-        used += count_words(text);
-        if (used > WORDS_MOST)
+        const bool limits = is_of_limits(m);
+        used += limits ? 0 : count_words(text);
+        if (used > WORDS_MOST && !limits)
             left++;
         else
             imk_result_line(result, "%s", text);
