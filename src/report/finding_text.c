@@ -29,6 +29,7 @@
     "{0?}write the unit into the header, such as mag_x [uT]{0!}if that is what it is, name it so " \
     "with --columns, with a name for each column and - for one to skip{?}{1?} (a sign in a name "  \
     "does not turn the readings round){?}"
+#define SKIP_IT "to do without this column, leave it out with --columns"
 #define UNORDERED "{0} row{0s} whose time does not increase: left out"
 #define DOUBLED                                                                                    \
     "{0} of {1} rows are the row before them once more, with its time and values: left out"
@@ -130,6 +131,23 @@ static const struct message {
      "the sensor was moved between {0.4g} s and {1.4g} s, so that {name} holds no noise that "
      "could be identified; the longest part at rest is read by --after {2g}s --before "
      "{3g}s"},
+    {"no_model:outliers",
+     "{name}: {0} of {1} samples are off the others by up to {2.5g} {other}, too many to be left "
+     "out; if they are codes of lost samples, such as -32768, write nan in their place; " SKIP_IT},
+    {"no_model:steps", "{name}: no noise terms describe it, and its level jumps {0} time{0s}, by "
+                       "up to {1.3g} {other}; take a part without a jump by --after and "
+                       "--before; " SKIP_IT},
+    {"no_model:cycle",
+     "{name}: no noise terms describe it, and its level goes up and down by {0.2g} {other} in a "
+     "cycle of {1.3g} s: a motion, such as breathing or a rate table? Record at rest; " SKIP_IT},
+    {"no_model:motion",
+     "{name}: it has noise, but no noise terms, lines and resonances describe it: a motion that "
+     "repeats, such as breathing or the ripple of a rate table? Record at rest, and look at imukit "
+     "spectrum; " SKIP_IT},
+    {"no_model:smooth",
+     "{name}: there is no noise in the record: it is smooth or too regular for a real sensor; "
+     "check "
+     "that it is no angle, filtered value or simulation without noise; " SKIP_IT},
     {"column_failed", "column {name}: {0t}"},
     {"allan_needs_all",
      "column {name} has {0} samples missing or taken out, and --method allan needs all of them; "

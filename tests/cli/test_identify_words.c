@@ -4,8 +4,11 @@
 
 #include "run_command.h"
 
-/* A quarter of an hour of three gyros and three accelerometers at 20 Hz. The awk program changes a
- * row after the header. */
+/* An awk program that changes a row after the header. */
+#define CHANGE "awk -F, -v OFS=, 'NR == 1 { print; next } { t = $1; %s; print }'"
+
+/* A quarter of an hour of three gyros and three accelerometers at 20 Hz. The awk program
+ * changes a row. */
 static void make_log(const char *change)
 {
     char line[1200];
@@ -14,9 +17,7 @@ static void make_log(const char *change)
                       "accel: {noise: {velocity_random_walk: 0.05 m/s/sqrt(h)}}\n");
     assert_int_equal(
         run("$I simulate model.yaml --rate 20Hz --duration 15min --seed 4 -o sound.csv"), 0);
-    snprintf(line, sizeof line,
-             "awk -F, -v OFS=, 'NR == 1 { print; next } { t = $1; %s; print }' sound.csv > log.csv",
-             change);
+    snprintf(line, sizeof line, CHANGE " sound.csv > log.csv", change);
     assert_int_equal(run(line), 0);
 }
 
@@ -214,6 +215,45 @@ static void test_what_cannot_be_seen(void **state)
     sweep();
 }
 
+/* A channel that has no model says why: what the screening saw in it. */
+static void test_no_model(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *change, *told;
+    } logs[] = {
+        {"if (NR % 89 == 0) $4 = -32768",
+         "gyro_z: 2022 of 180000 samples are off the others by up to 32768 deg/s, too many"},
+        {"$4 = NR % 2", "gyro_z: there is no noise in the record: it is smooth or too regular"},
+        {"$4 += 0.03 * sin(6.2832 * (p += (0.25 + 0.1 * sin(NR * NR)) / 100))",
+         "gyro_z: it has noise, but no noise terms, lines and resonances describe it: a motion"},
+    };
+    put("gyros.yaml", "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h), "
+                      "bias_instability: 8 deg/h}}\n");
+    assert_int_equal(
+        run("$I simulate gyros.yaml --rate 100Hz --duration 30min --seed 4 -o long.csv"), 0);
+    for (size_t k = 0; k < sizeof logs / sizeof logs[0]; k++) {
+        char line[400];
+        snprintf(line, sizeof line, CHANGE " long.csv > log.csv && $I identify log.csv",
+                 logs[k].change);
+        assert_int_equal(run(line), 1);
+        check_contains(err, logs[k].told, err);
+        check_contains(err, "leave it out with --columns", err);
+        assert_null(strstr(err, "converge"));
+    }
+    sweep();
+}
+
+/* Lines all over the spectrum leave no band between them, which was read all the same. */
+static void test_lines_everywhere(void **state)
+{
+    (void)state;
+    make_log("if (NR % 97 == 0) $3 = -999");
+    identify_log("");
+    check_first("Usable with care: the model does not describe gyro_y at all averaging times");
+    sweep();
+}
+
 /* What is suggested next succeeds: white noise alone says nothing of a grade. */
 static void next_lines_succeed(void **state)
 {
@@ -241,6 +281,8 @@ int main(void)
                                        cmocka_unit_test(test_standing_still),
                                        cmocka_unit_test(test_axis_of_another_unit),
                                        cmocka_unit_test(test_numbers_of_no_gyro),
-                                       cmocka_unit_test(test_what_cannot_be_seen)};
+                                       cmocka_unit_test(test_what_cannot_be_seen),
+                                       cmocka_unit_test(test_no_model),
+                                       cmocka_unit_test(test_lines_everywhere)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -11,6 +11,8 @@
 
 /* Axes of one sensor differ by less than 2 in their white noise. */
 static const double factor_most = 4;
+/* A larger one is of a channel without a model. */
+static const double factor_believed = 1e6;
 /* How near a factor must be to a ratio of units: axes may differ by a third. */
 static const double unit_near = 1.35;
 /* The worst MEMS gyros have an angle random walk of some deg/sqrt(h), and an offset of 20 deg/s. */
@@ -21,10 +23,11 @@ static const imk_log_column *column_of(const imk_identify_log *log, size_t chann
     return imk_even_record_column(&log->record, channel);
 }
 
+/* 0: absent, or kept from its value by outliers. */
 static double white_of(const imk_identify_log *log, size_t channel)
 {
     const imk_estimate *white = &log->result[channel].term[IMK_NOISE_WHITE];
-    return white->present ? white->value : 0;
+    return white->present && !log->screen[channel].heavy_tails ? white->value : 0;
 }
 
 /* The three axes of a kind; false where there are not exactly these, or one has no white noise. */
@@ -64,8 +67,9 @@ static void tell_axis(imk_verdict *v, const imk_identify_log *log, size_t channe
     const char *more = factor > 1 ? "larger" : "smaller";
     const double times = factor > 1 ? factor : 1 / factor;
     const char *clause = imk_result_key(
-        v->result, "the white noise of %s is %.3g times %s than that of the other two axes%s%s",
-        column->name, times, more, unit ? ", as if it were in " : "", unit ? unit : "");
+        v->result, "the white noise of %s is %.*f times %s than that of the other two axes%s%s",
+        column->name, times < 100 ? 1 : 0, times, more, unit ? ", as if it were in " : "",
+        unit ? unit : "");
     imki_verdict_add(v, IMK_FINDING_WARNING, "axis_differs",
                      "%s; axes of one sensor are more alike: check the unit of this column and the "
                      "order of the columns.",
@@ -82,9 +86,11 @@ static void assess_triad(imk_verdict *v, const imk_identify_log *log, imk_channe
     for (int k = 0; k < 3; k++) {
         const double own = white_of(log, axis[k]), one = white_of(log, axis[(k + 1) % 3]),
                      other = white_of(log, axis[(k + 2) % 3]);
-        if ((own > factor_most * one && own > factor_most * other) ||
-            (factor_most * own < one && factor_most * own < other))
-            tell_axis(v, log, axis[k], own / sqrt(one * other));
+        const double factor = own / sqrt(one * other);
+        if (((own > factor_most * one && own > factor_most * other) ||
+             (factor_most * own < one && factor_most * own < other)) &&
+            fabs(log10(factor)) < log10(factor_believed))
+            tell_axis(v, log, axis[k], factor);
     }
 }
 

@@ -250,7 +250,8 @@ const char *imk_identify_sentence(const imk_verdict *v)
     if (left > 0)
         text = imk_result_key(v->result, "%s; and %zu more", text, left);
     const size_t length = strlen(text);
-    return length > 0 && text[length - 1] == '.' ? text : imk_result_key(v->result, "%s.", text);
+    return length > 0 && strchr(".?", text[length - 1]) ? text
+                                                        : imk_result_key(v->result, "%s.", text);
 }
 
 /* ---- list ------------------------------------------------------------------------------------ */
