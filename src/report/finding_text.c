@@ -21,6 +21,9 @@
 
 #define SAMPLES_FIRST ": {0} of {1} samples (first: row {2})"
 
+#define NO_TIMES                                                                                   \
+    "leave the time column out with --columns and state the sampling rate, such as --rate 100Hz"
+
 #define LONGEST_STRETCH                                                                            \
     "{0} bad row{0s}, {1} missing sample{1s}: using the longest clean stretch, rows {2} to {3} "   \
     "of "                                                                                          \
@@ -54,6 +57,15 @@ static const struct message {
     {"no_grid", "the timestamps are not evenly spaced: steps scatter by {0.0f} % of their median, "
                 "{1g} s; if only the timestamps scatter, leave the time column out with --columns "
                 "and state the sampling rate, such as --rate 100Hz; otherwise resample the log"},
+    {"time_constant", "the time is {0.10g} s in every row: " NO_TIMES},
+    {"time_backwards", "time runs backwards, in {0} of {1} rows: turn the order of the rows round, "
+                       "or sort them by time (sort -n)"},
+    {"time_order", "the rows are not in the order of their times: time goes back in {0} of {1} "
+                   "rows, by up to {2g} s, and its steps are even otherwise; sort the rows by time "
+                   "as a number (sort -n), not as a text"},
+    {"time_digits",
+     "the time has too few digits: it stays the same for {0.0f} rows on average and "
+     "then steps by {1g} s, as seconds since 1970 do in single precision; " NO_TIMES},
     {"jitter", "the timestamps scatter by {0.1f} % of the sample interval; the samples are treated "
                "as evenly spaced"},
     {"clock_leaps", "the timestamps do not fit the number of rows; the clock may have jumped or "
@@ -108,6 +120,8 @@ static const struct message {
      "{0} samples are missing in {1} gap{1s}, first before row {2}; " HOW_TO_GO_ON},
     {"longest_stretch", LONGEST_STRETCH},
     {"stamps:longest_stretch", LONGEST_STRETCH},
+    {"stamps:short_stretch", LONGEST_STRETCH ", which are {5.2g} % of the log: look for what is "
+                                             "wrong with the others"},
     {"no_good_rows", "no two consecutive rows are good"},
     /* allan_log.c */
     {"no_value", "column {name} has no finite value in {0} rows; leave it out with --columns, or "

@@ -52,6 +52,7 @@ static const struct words {
      "Terms that can replace each other: %s."},
     {"stamps:unordered", "rows whose time does not increase are left out", NULL},
     {"stamps:longest_stretch", "only the longest part without missing samples is used", NULL},
+    {"stamps:short_stretch", "less than a tenth of the rows is used, as the rest has faults", NULL},
     {"stamps:coarse", "one stamp is that of several rows", NULL},
     {"stamps:bunched", "rows are stamped in bunches", NULL},
     {"stamps:late", "rows are stamped late", NULL},
