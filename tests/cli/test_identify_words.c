@@ -144,6 +144,9 @@ static void test_standing_still(void **state)
     make_log("if (t > 300 && t < 390) $4 = z; else z = $4");
     identify_log("");
     check_first("Usable with care: gyro_z stands still for a part of the log");
+    make_log("if (t > 300 && t < 390) { $3 = y; $4 = z } else { y = $3; z = $4 }");
+    identify_log("");
+    check_first("Usable with care: gyro_y and gyro_z stand still for a part of the log");
     make_log("if (t > 300 && t < 318) $4 = z; else z = $4");
     identify_log("--strict");
     sweep();
@@ -254,6 +257,19 @@ static void test_lines_everywhere(void **state)
     sweep();
 }
 
+/* Between the samples of a slower sensor the noise is weaker. */
+static void test_one_or_several(void **state)
+{
+    (void)state;
+    make_log("if (NR % 3) $4 *= 0.75");
+    identify_log("");
+    check_contains(out, "gyro_z looks interpolated from a slower sensor", out);
+    make_log("if (NR % 3) { $4 *= 0.75; $5 *= 0.75 }");
+    identify_log("");
+    check_contains(out, "gyro_z and accel_x look interpolated from a slower sensor", out);
+    sweep();
+}
+
 /* What is suggested next succeeds: white noise alone says nothing of a grade. */
 static void next_lines_succeed(void **state)
 {
@@ -283,6 +299,7 @@ int main(void)
                                        cmocka_unit_test(test_numbers_of_no_gyro),
                                        cmocka_unit_test(test_what_cannot_be_seen),
                                        cmocka_unit_test(test_no_model),
+                                       cmocka_unit_test(test_one_or_several),
                                        cmocka_unit_test(test_lines_everywhere)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A verdict in one sentence, and its messages in a few words. Every code has a clause for the
- * sentence and a title for the list; %s stands for the channels. The whole text of a message is for
- * the page and the JSON. */
+ * sentence and a title for the list; %s stands for the channels, {looks|look} for the word of one
+ * channel and that of several. The whole text of a message is for the page and the JSON. */
 #include "identify_show_internal.h"
 
 #include "report/result_internal.h"
@@ -24,7 +24,7 @@ static const struct words {
     {"saturated", "samples stick at the end of the range in %s",
      "Samples at an extreme value: %s."},
     {"frozen", "samples are repeated in %s, so that the true rate is lower", "Repeats: %s."},
-    {"interpolated", "%s look interpolated from a slower sensor, so that noise is missing",
+    {"interpolated", "%s {looks|look} interpolated from a slower sensor, so that noise is missing",
      "Interpolated from a slower sensor: %s."},
     {"alternating", "the noise of %s alternates from row to row",
      "Noise that alternates from row to row: %s."},
@@ -39,7 +39,7 @@ static const struct words {
     {"lost", NULL, "Rows that were lost and written as 0, left out: %s."},
     {"zeros", "values of %s near zero were put to zero, or all were cut off toward zero",
      "More zeros than the noise has: %s."},
-    {"dead", "%s stands still for a part of the log", "Standing still: %s."},
+    {"dead", "%s {stands|stand} still for a part of the log", "Standing still: %s."},
     {"behind_filter", "the white noise of %s may be larger, behind a low-pass filter",
      "White noise behind a filter, or a fast Gauss-Markov term: %s."},
     {"dropped", "the white noise of %s is too low, because samples far from the level are missing",
@@ -149,10 +149,17 @@ static void name_channels(const imk_even_record *record, uint64_t channels, imki
         imki_text_add(text, "%s%s", k == 0 ? "" : k + 1 == count ? " and " : ", ", names[k]);
 }
 
-/* A pattern with %s replaced; without a channel "the record". */
-static const char *filled(imk_verdict *v, const char *pattern, const char *names)
+/* A pattern with %s and {one|several} replaced. */
+static const char *filled(imk_verdict *v, const char *pattern, const char *names, bool several)
 {
-    const char *place = strstr(pattern, "%s");
+    const char *place = strstr(pattern, "%s"), *open = strchr(pattern, '{');
+    const char *bar = open ? strchr(open, '|') : NULL, *close = bar ? strchr(bar, '}') : NULL;
+    if (close) {
+        const char *word = several ? bar + 1 : open + 1, *end = several ? close : bar;
+        pattern = imk_result_key(v->result, "%.*s%.*s%s", (int)(open - pattern), pattern,
+                                 (int)(end - word), word, close + 1);
+        place = strstr(pattern, "%s");
+    }
     if (!place)
         return pattern;
     return imk_result_key(v->result, "%.*s%s%s", (int)(place - pattern), pattern, names, place + 2);
@@ -178,8 +185,9 @@ void imki_verdict_about(imk_verdict *v, const imk_even_record *record, uint64_t 
         name_channels(record, channels, &names);
     if (w && !names.failed && names.bytes) {
         const char *text = names.size > 0 ? names.bytes : "the record";
-        m->clause = w->clause ? filled(v, w->clause, text) : NULL;
-        m->brief = w->title ? filled(v, w->title, text) : NULL;
+        const bool several = (channels & (channels - 1)) != 0;
+        m->clause = w->clause ? filled(v, w->clause, text, several) : NULL;
+        m->brief = w->title ? filled(v, w->title, text, several) : NULL;
         if (v->label && m->brief)
             m->brief = imk_result_key(v->result, "%.200s: %s", v->label, m->brief);
     }
