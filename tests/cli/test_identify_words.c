@@ -270,6 +270,26 @@ static void test_one_or_several(void **state)
     sweep();
 }
 
+/* A unit that the header states already. */
+static void test_unit_of_the_header(void **state)
+{
+    (void)state;
+    make_log("");
+    identify_log("--accel-unit g --gyro-unit deg/s --time-unit s");
+    check_contains(
+        err, "--accel-unit g is not used: the header says accel_x [m/s^2], and its unit holds",
+        err);
+    assert_null(strstr(err, "--gyro-unit"));
+    assert_null(strstr(err, "--time-unit"));
+    assert_int_equal(run("$I allan log.csv --time-unit ms"), 0);
+    check_contains(err, "--time-unit ms is not used: the header says time [s]", err);
+    assert_int_equal(run("sed '1s/ .m.s.2.//g' log.csv > none.csv && $I identify none.csv "
+                         "--accel-unit m/s^2"),
+                     0);
+    assert_null(strstr(err, "not used"));
+    sweep();
+}
+
 /* What is suggested next succeeds: white noise alone says nothing of a grade. */
 static void next_lines_succeed(void **state)
 {
@@ -299,6 +319,7 @@ int main(void)
                                        cmocka_unit_test(test_numbers_of_no_gyro),
                                        cmocka_unit_test(test_what_cannot_be_seen),
                                        cmocka_unit_test(test_no_model),
+                                       cmocka_unit_test(test_unit_of_the_header),
                                        cmocka_unit_test(test_one_or_several),
                                        cmocka_unit_test(test_lines_everywhere)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
