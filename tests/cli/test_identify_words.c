@@ -21,6 +21,15 @@ static void make_log(const char *change)
     assert_int_equal(run(line), 0);
 }
 
+/* Half an hour of three gyros at 100 Hz. */
+static void make_long_log(void)
+{
+    put("gyros.yaml", "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h), "
+                      "bias_instability: 8 deg/h}}\n");
+    assert_int_equal(
+        run("$I simulate gyros.yaml --rate 100Hz --duration 30min --seed 4 -o long.csv"), 0);
+}
+
 static void identify_log(const char *options)
 {
     char line[300];
@@ -102,10 +111,27 @@ static void test_vibration(void **state)
     check_contains(out, "vibrates (a fan, a motor, the building), at 2.", "tones");
     identify_log("");
     check_contains(out, "Vibration of what the sensor stands on, in gyro_x and gyro_y.", "list");
+    assert_null(strstr(out, "averages"));
     make_log("$2 += sin(6.2831853 * 2.7 * t) / 20");
     identify_log("--verbose");
     assert_null(strstr(out, "what the sensor stands on"));
     check_contains(out, "2.7 Hz", "tone");
+    sweep();
+}
+
+/* The zeros of a mean of neighbours are at the same frequencies in all channels. */
+static void test_averages(void **state)
+{
+    (void)state;
+    make_long_log();
+    assert_int_equal(run("awk -F, -v OFS=, 'NR == 1 { print; next } { for (c = 2; c <= 4; c++) { v "
+                         "= $c; for (k = 4; k > 0; k--) { h[c, k] = h[c, k - 1]; v += h[c, k] } "
+                         "h[c, 0] = $c; $c = v / 5 } } NR > 6' long.csv > log.csv"),
+                     0);
+    identify_log("--verbose");
+    check_contains(out, "or the logger wrote averages of several samples", out);
+    identify_log("");
+    check_contains(out, "stands on, or averages of the logger: all channels.", out);
     sweep();
 }
 
@@ -231,10 +257,7 @@ static void test_no_model(void **state)
         {"$4 += 0.03 * sin(6.2832 * (p += (0.25 + 0.1 * sin(NR * NR)) / 100))",
          "gyro_z: it has noise, but no noise terms, lines and resonances describe it: a motion"},
     };
-    put("gyros.yaml", "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h), "
-                      "bias_instability: 8 deg/h}}\n");
-    assert_int_equal(
-        run("$I simulate gyros.yaml --rate 100Hz --duration 30min --seed 4 -o long.csv"), 0);
+    make_long_log();
     for (size_t k = 0; k < sizeof logs / sizeof logs[0]; k++) {
         char line[400];
         snprintf(line, sizeof line, CHANGE " long.csv > log.csv && $I identify log.csv",
@@ -319,6 +342,7 @@ int main(void)
                                        cmocka_unit_test(test_numbers_of_no_gyro),
                                        cmocka_unit_test(test_what_cannot_be_seen),
                                        cmocka_unit_test(test_no_model),
+                                       cmocka_unit_test(test_averages),
                                        cmocka_unit_test(test_unit_of_the_header),
                                        cmocka_unit_test(test_one_or_several),
                                        cmocka_unit_test(test_lines_everywhere)};
