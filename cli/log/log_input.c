@@ -53,6 +53,24 @@ int log_input_check(const log_input *input)
     return -1;
 }
 
+void log_input_note_units(const imk_log_reader *reader, const imk_log_settings *settings)
+{
+    static const struct {
+        imk_quantity quantity;
+        const char *option;
+    } units[] = {{IMK_QUANTITY_ANGULAR_RATE, "gyro-unit"},
+                 {IMK_QUANTITY_SPECIFIC_FORCE, "accel-unit"},
+                 {IMK_QUANTITY_TIME, "time-unit"},
+                 {IMK_QUANTITY_TEMPERATURE, "temperature-unit"}};
+    for (size_t k = 0; k < sizeof units / sizeof units[0]; k++) {
+        const imk_log_column *column;
+        const char *unit = imk_log_unit_ignored(reader, settings, units[k].quantity, &column);
+        if (unit)
+            command_note("--%s %s is not used: the header says %s [%s], and its unit holds",
+                         units[k].option, unit, column->name, column->unit.text);
+    }
+}
+
 int log_input_open(const log_input *input, const char *path, bool again, imk_log_reader **reader)
 {
     imk_error error;
@@ -60,6 +78,8 @@ int log_input_open(const log_input *input, const char *path, bool again, imk_log
     settings.reopened = again;
     if (imk_log_open(path, &settings, reader, &error) != IMK_OK)
         return command_log_error(&error, path);
+    if (!again)
+        log_input_note_units(*reader, &settings);
     return -1;
 }
 

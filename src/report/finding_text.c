@@ -21,6 +21,9 @@
 
 #define SAMPLES_FIRST ": {0} of {1} samples (first: row {2})"
 
+#define NO_TIMES                                                                                   \
+    "leave the time column out with --columns and state the sampling rate, such as --rate 100Hz"
+
 #define LONGEST_STRETCH                                                                            \
     "{0} bad row{0s}, {1} missing sample{1s}: using the longest clean stretch, rows {2} to {3} "   \
     "of "                                                                                          \
@@ -29,6 +32,7 @@
     "{0?}write the unit into the header, such as mag_x [uT]{0!}if that is what it is, name it so " \
     "with --columns, with a name for each column and - for one to skip{?}{1?} (a sign in a name "  \
     "does not turn the readings round){?}"
+#define SKIP_IT "to do without this column, leave it out with --columns"
 #define UNORDERED "{0} row{0s} whose time does not increase: left out"
 #define DOUBLED                                                                                    \
     "{0} of {1} rows are the row before them once more, with its time and values: left out"
@@ -43,6 +47,9 @@ static const struct message {
     {"unused_columns", "not used in {record}, although like {other}: {name}; " NAME_IT},
     {"unused_axis",
      "{record}: an axis is missing, and {name}, which looks like {other}, is not used; " NAME_IT},
+    {"unused_sensor", "{record}: no column is read as {other}; {name} may be that: " NAME_IT},
+    {"unknown_channels", "no column is read as one of a gyro or an accelerometer: the columns are "
+                         "analysed as they are, and belong to no model"},
     {"one_row", "there is only one row; record minutes to hours at rest"},
     {"no_interval", "the time column does not increase, so the sampling rate is unknown; leave the "
                     "column out with --columns and state the rate, such as --rate 100Hz"},
@@ -50,6 +57,15 @@ static const struct message {
     {"no_grid", "the timestamps are not evenly spaced: steps scatter by {0.0f} % of their median, "
                 "{1g} s; if only the timestamps scatter, leave the time column out with --columns "
                 "and state the sampling rate, such as --rate 100Hz; otherwise resample the log"},
+    {"time_constant", "the time is {0.10g} s in every row: " NO_TIMES},
+    {"time_backwards", "time runs backwards, in {0} of {1} rows: turn the order of the rows round, "
+                       "or sort them by time (sort -n)"},
+    {"time_order", "the rows are not in the order of their times: time goes back in {0} of {1} "
+                   "rows, by up to {2g} s, and its steps are even otherwise; sort the rows by time "
+                   "as a number (sort -n), not as a text"},
+    {"time_digits",
+     "the time has too few digits: it stays the same for {0.0f} rows on average and "
+     "then steps by {1g} s, as seconds since 1970 do in single precision; " NO_TIMES},
     {"jitter", "the timestamps scatter by {0.1f} % of the sample interval; the samples are treated "
                "as evenly spaced"},
     {"clock_leaps", "the timestamps do not fit the number of rows; the clock may have jumped or "
@@ -107,6 +123,8 @@ static const struct message {
      "{0} samples are missing in {1} gap{1s}, first before row {2}; " HOW_TO_GO_ON},
     {"longest_stretch", LONGEST_STRETCH},
     {"stamps:longest_stretch", LONGEST_STRETCH},
+    {"stamps:short_stretch", LONGEST_STRETCH ", which are {5.2g} % of the log: look for what is "
+                                             "wrong with the others"},
     {"no_good_rows", "no two consecutive rows are good"},
     /* allan_log.c */
     {"no_value", "column {name} has no finite value in {0} rows; leave it out with --columns, or "
@@ -130,6 +148,23 @@ static const struct message {
      "the sensor was moved between {0.4g} s and {1.4g} s, so that {name} holds no noise that "
      "could be identified; the longest part at rest is read by --after {2g}s --before "
      "{3g}s"},
+    {"no_model:outliers",
+     "{name}: {0} of {1} samples are off the others by up to {2.5g} {other}, too many to be left "
+     "out; if they are codes of lost samples, such as -32768, write nan in their place; " SKIP_IT},
+    {"no_model:steps", "{name}: no noise terms describe it, and its level jumps {0} time{0s}, by "
+                       "up to {1.3g} {other}; take a part without a jump by --after and "
+                       "--before; " SKIP_IT},
+    {"no_model:cycle",
+     "{name}: no noise terms describe it, and its level goes up and down by {0.2g} {other} in a "
+     "cycle of {1.3g} s: a motion, such as breathing or a rate table? Record at rest; " SKIP_IT},
+    {"no_model:motion",
+     "{name}: it has noise, but no noise terms, lines and resonances describe it: a motion that "
+     "repeats, such as breathing or the ripple of a rate table? Record at rest, and look at imukit "
+     "spectrum; " SKIP_IT},
+    {"no_model:smooth",
+     "{name}: there is no noise in the record: it is smooth or too regular for a real sensor; "
+     "check "
+     "that it is no angle, filtered value or simulation without noise; " SKIP_IT},
     {"column_failed", "column {name}: {0t}"},
     {"allan_needs_all",
      "column {name} has {0} samples missing or taken out, and --method allan needs all of them; "

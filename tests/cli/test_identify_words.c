@@ -4,8 +4,11 @@
 
 #include "run_command.h"
 
-/* A quarter of an hour of three gyros and three accelerometers at 20 Hz. The awk program changes a
- * row after the header. */
+/* An awk program that changes a row after the header. */
+#define CHANGE "awk -F, -v OFS=, 'NR == 1 { print; next } { t = $1; %s; print }'"
+
+/* A quarter of an hour of three gyros and three accelerometers at 20 Hz. The awk program
+ * changes a row. */
 static void make_log(const char *change)
 {
     char line[1200];
@@ -14,10 +17,17 @@ static void make_log(const char *change)
                       "accel: {noise: {velocity_random_walk: 0.05 m/s/sqrt(h)}}\n");
     assert_int_equal(
         run("$I simulate model.yaml --rate 20Hz --duration 15min --seed 4 -o sound.csv"), 0);
-    snprintf(line, sizeof line,
-             "awk -F, -v OFS=, 'NR == 1 { print; next } { t = $1; %s; print }' sound.csv > log.csv",
-             change);
+    snprintf(line, sizeof line, CHANGE " sound.csv > log.csv", change);
     assert_int_equal(run(line), 0);
+}
+
+/* Half an hour of three gyros at 100 Hz. */
+static void make_long_log(void)
+{
+    put("gyros.yaml", "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h), "
+                      "bias_instability: 8 deg/h}}\n");
+    assert_int_equal(
+        run("$I simulate gyros.yaml --rate 100Hz --duration 30min --seed 4 -o long.csv"), 0);
 }
 
 static void identify_log(const char *options)
@@ -101,10 +111,27 @@ static void test_vibration(void **state)
     check_contains(out, "vibrates (a fan, a motor, the building), at 2.", "tones");
     identify_log("");
     check_contains(out, "Vibration of what the sensor stands on, in gyro_x and gyro_y.", "list");
+    assert_null(strstr(out, "averages"));
     make_log("$2 += sin(6.2831853 * 2.7 * t) / 20");
     identify_log("--verbose");
     assert_null(strstr(out, "what the sensor stands on"));
     check_contains(out, "2.7 Hz", "tone");
+    sweep();
+}
+
+/* The zeros of a mean of neighbours are at the same frequencies in all channels. */
+static void test_averages(void **state)
+{
+    (void)state;
+    make_long_log();
+    assert_int_equal(run("awk -F, -v OFS=, 'NR == 1 { print; next } { for (c = 2; c <= 4; c++) { v "
+                         "= $c; for (k = 4; k > 0; k--) { h[c, k] = h[c, k - 1]; v += h[c, k] } "
+                         "h[c, 0] = $c; $c = v / 5 } } NR > 6' long.csv > log.csv"),
+                     0);
+    identify_log("--verbose");
+    check_contains(out, "or the logger wrote averages of several samples", out);
+    identify_log("");
+    check_contains(out, "stands on, or averages of the logger: all channels.", out);
     sweep();
 }
 
@@ -143,8 +170,146 @@ static void test_standing_still(void **state)
     make_log("if (t > 300 && t < 390) $4 = z; else z = $4");
     identify_log("");
     check_first("Usable with care: gyro_z stands still for a part of the log");
+    make_log("if (t > 300 && t < 390) { $3 = y; $4 = z } else { y = $3; z = $4 }");
+    identify_log("");
+    check_first("Usable with care: gyro_y and gyro_z stand still for a part of the log");
     make_log("if (t > 300 && t < 318) $4 = z; else z = $4");
     identify_log("--strict");
+    sweep();
+}
+
+/* A column of another unit or another place: its white noise is unlike that of its triad. */
+static void test_axis_of_another_unit(void **state)
+{
+    (void)state;
+    make_log("$5 /= 9.80665");
+    identify_log("");
+    check_first("Usable with care: the white noise of accel_x is 9.");
+    check_contains(out, "times smaller than that of the other two axes, as if it were in g.", out);
+    make_log("$3 *= 3.141592653589793 / 180");
+    identify_log("");
+    check_contains(out, "times smaller than that of the other two axes, as if it were in rad/s.",
+                   out);
+    make_log("z = $4; $4 = $6; $6 = z");
+    identify_log("--json");
+    check_contains(out, "the white noise of gyro_z is", out);
+    check_contains(out, "the white noise of accel_y is", out);
+    check_contains(out, "\"axis_differs\"", out);
+    make_log("$4 *= 3");
+    identify_log("");
+    assert_null(strstr(out, "the white noise of"));
+    sweep();
+}
+
+static void test_numbers_of_no_gyro(void **state)
+{
+    (void)state;
+    make_log("for (c = 2; c < 5; c++) $c *= 57.3");
+    identify_log("");
+    check_first("Usable with care: the numbers of the gyros are no gyro's at rest: a wrong unit");
+    make_log("$3 += 40");
+    identify_log("");
+    check_first("Usable with care: the numbers of gyro_y are no gyro's at rest");
+    make_log("for (c = 2; c < 5; c++) $c = 9 * $c + 20");
+    identify_log("");
+    assert_null(strstr(out, "no gyro's"));
+    sweep();
+}
+
+/* What no log can show is said beside every verdict, and only what applies. */
+static void test_what_cannot_be_seen(void **state)
+{
+    (void)state;
+    const char *limits =
+        "\nCannot be seen in a log: a wrong unit or rate of the time; a wrong unit "
+        "or range of the gyros; accelerometer scales off by up to 5 %.\n";
+    make_log("");
+    identify_log("--strict");
+    check_contains(out, limits, "limits");
+    identify_log("--json");
+    check_contains(out, "\"not_testable\"", "code");
+    assert_int_equal(run("cut -d, -f2-5 log.csv > part.csv && $I identify part.csv --rate 20Hz"),
+                     0);
+    check_contains(out,
+                   "a wrong --rate; a wrong unit or range of the gyros; a wrong unit of the "
+                   "accelerometers.\n",
+                   "of a part");
+    assert_int_equal(run("cut -d, -f1,5- log.csv > part.csv && $I identify part.csv"), 0);
+    check_contains(out, "time; accelerometer scales", "without gyros");
+    /* It stays where there is no room for all notes. */
+    make_log("for (c = 2; c <= 7; c++) $c += (t > 450) + sin(6.2831853 * 2.7 * t) / 2; if (NR % "
+             "4001 == 0) $2 += 10; if (NR % 300 == 0) next");
+    identify_log("");
+    check_contains(out, limits, "limits");
+    sweep();
+}
+
+/* A channel that has no model says why: what the screening saw in it. */
+static void test_no_model(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *change, *told;
+    } logs[] = {
+        {"if (NR % 89 == 0) $4 = -32768",
+         "gyro_z: 2022 of 180000 samples are off the others by up to 32768 deg/s, too many"},
+        {"$4 = NR % 2", "gyro_z: there is no noise in the record: it is smooth or too regular"},
+        {"$4 += 0.03 * sin(6.2832 * (p += (0.25 + 0.1 * sin(NR * NR)) / 100))",
+         "gyro_z: it has noise, but no noise terms, lines and resonances describe it: a motion"},
+    };
+    make_long_log();
+    for (size_t k = 0; k < sizeof logs / sizeof logs[0]; k++) {
+        char line[400];
+        snprintf(line, sizeof line, CHANGE " long.csv > log.csv && $I identify log.csv",
+                 logs[k].change);
+        assert_int_equal(run(line), 1);
+        check_contains(err, logs[k].told, err);
+        check_contains(err, "leave it out with --columns", err);
+        assert_null(strstr(err, "converge"));
+    }
+    sweep();
+}
+
+/* Lines all over the spectrum leave no band between them, which was read all the same. */
+static void test_lines_everywhere(void **state)
+{
+    (void)state;
+    make_log("if (NR % 97 == 0) $3 = -999");
+    identify_log("");
+    check_first("Usable with care: the model does not describe gyro_y at all averaging times");
+    sweep();
+}
+
+/* Between the samples of a slower sensor the noise is weaker. */
+static void test_one_or_several(void **state)
+{
+    (void)state;
+    make_log("if (NR % 3) $4 *= 0.75");
+    identify_log("");
+    check_contains(out, "gyro_z looks interpolated from a slower sensor", out);
+    make_log("if (NR % 3) { $4 *= 0.75; $5 *= 0.75 }");
+    identify_log("");
+    check_contains(out, "gyro_z and accel_x look interpolated from a slower sensor", out);
+    sweep();
+}
+
+/* A unit that the header states already. */
+static void test_unit_of_the_header(void **state)
+{
+    (void)state;
+    make_log("");
+    identify_log("--accel-unit g --gyro-unit deg/s --time-unit s");
+    check_contains(
+        err, "--accel-unit g is not used: the header says accel_x [m/s^2], and its unit holds",
+        err);
+    assert_null(strstr(err, "--gyro-unit"));
+    assert_null(strstr(err, "--time-unit"));
+    assert_int_equal(run("$I allan log.csv --time-unit ms"), 0);
+    check_contains(err, "--time-unit ms is not used: the header says time [s]", err);
+    assert_int_equal(run("sed '1s/ .m.s.2.//g' log.csv > none.csv && $I identify none.csv "
+                         "--accel-unit m/s^2"),
+                     0);
+    assert_null(strstr(err, "not used"));
     sweep();
 }
 
@@ -172,6 +337,14 @@ int main(void)
                                        cmocka_unit_test(test_vibration),
                                        cmocka_unit_test(test_length),
                                        cmocka_unit_test(test_filter_of_the_driver),
-                                       cmocka_unit_test(test_standing_still)};
+                                       cmocka_unit_test(test_standing_still),
+                                       cmocka_unit_test(test_axis_of_another_unit),
+                                       cmocka_unit_test(test_numbers_of_no_gyro),
+                                       cmocka_unit_test(test_what_cannot_be_seen),
+                                       cmocka_unit_test(test_no_model),
+                                       cmocka_unit_test(test_averages),
+                                       cmocka_unit_test(test_unit_of_the_header),
+                                       cmocka_unit_test(test_one_or_several),
+                                       cmocka_unit_test(test_lines_everywhere)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

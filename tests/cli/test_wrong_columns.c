@@ -46,6 +46,11 @@ static void test_each_verb(void **state)
     }
     check_told("gyro_y/-gyro_y", "identify wrong.csv --strict", 1,
                "a sign in a name does not turn the readings round");
+    check_told("gyro_/gryo_/g; s/x/x", "identify wrong.csv --strict", 1,
+               "no column is read as gyro_x, gyro_y, gyro_z; gryo_x, gryo_y, gryo_z may be that");
+    check_told("gyro_/gryo_/g; s/accel_/akz_/g; s/x/x", "identify wrong.csv", 0,
+               "no column is read as one of a gyro or an accelerometer");
+    check_told("time/tempo", "identify wrong.csv", 1, "if tempo is the time, name it so");
     check_told("mag_y/-mag_y", "calibrate wrong.csv --strict " POSES, 1,
                "-mag_y, which looks like mag_y");
     check_told(" .uT.//g; s/x/x", "calibrate wrong.csv " POSES, 0,

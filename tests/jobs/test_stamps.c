@@ -493,6 +493,49 @@ static void test_no_rate(void **context)
     imk_even_record_free(&even);
 }
 
+/* Why there is no rate: each case has its own reason. */
+static void check_reason(const test_log *l, imk_gap_policy gaps, imk_status expected,
+                         const char *code)
+{
+    imk_array_source memory;
+    imk_even_record even;
+    imk_findings findings = {.count = 0};
+    imk_error error;
+    char text[900];
+    const imk_job job = {.memory = 0};
+    const imk_record_source source = source_of(l, 0, &memory);
+    CHECK_STATUS(imk_even_record_load(&source, gaps, &job, &even, &findings, &error), expected);
+    const imk_finding *last = &findings.item[findings.count - 1];
+    assert_string_equal(last->code, code);
+    imk_finding_text(last, text, sizeof text);
+    assert_null(strstr(text, "nan"));
+    assert_null(strstr(text, "scatter"));
+    imk_even_record_free(&even);
+}
+
+static void test_why_there_is_no_rate(void **context)
+{
+    (void)context;
+    static test_log l;
+    make(&l, 1, ROWS, 100);
+    for (size_t i = 0; i < ROWS; i++)
+        l.time[i] = 7;
+    check_reason(&l, IMK_GAPS_KEEP, IMK_ERROR_TIME_ORDER, "time_constant");
+    for (size_t i = 0; i < ROWS; i++)
+        l.time[i] = 0.01 * (double)(ROWS - i);
+    check_reason(&l, IMK_GAPS_KEEP, IMK_ERROR_TIME_ORDER, "time_backwards");
+    for (size_t i = 0; i < ROWS; i++) /* blocks of a second, the last first */
+        l.time[i] = 0.01 * (double)(ROWS - 100 - i / 100 * 100 + i % 100);
+    check_reason(&l, IMK_GAPS_KEEP, IMK_ERROR_TIME_ORDER, "time_order");
+    check_reason(&l, IMK_GAPS_LONGEST, IMK_OK, "stamps:short_stretch");
+    make(&l, 1, MOST, 10);
+    round_down(&l, 128);
+    check_reason(&l, IMK_GAPS_KEEP, IMK_ERROR_TIME_ORDER, "time_digits");
+    make(&l, 1, ROWS, 100); /* half of the log is no short stretch */
+    l.gyro[0][ROWS / 2] = nan_value;
+    check_reason(&l, IMK_GAPS_LONGEST, IMK_OK, "stamps:longest_stretch");
+}
+
 /* ---- the estimates ---- */
 
 /* The white noise of the first channels is that of the same log with sound stamps. */
@@ -611,6 +654,7 @@ int main(void)
         cmocka_unit_test(test_held_samples),
         cmocka_unit_test(test_a_stated_rate),
         cmocka_unit_test(test_no_rate),
+        cmocka_unit_test(test_why_there_is_no_rate),
         cmocka_unit_test(test_noise),
         cmocka_unit_test(test_verdict),
         cmocka_unit_test(test_long_record),

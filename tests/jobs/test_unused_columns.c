@@ -10,23 +10,37 @@
 
 enum { ROWS = 20 };
 
-/* What an Allan deviation of gyro_x, gyro_z, accel_x and one more column tells of the last. */
-static const imk_finding *told(const char *name, imk_allan_log **a)
+/* An Allan deviation of a log with these columns. */
+static imk_allan_log *log_of(const char *header)
 {
+    static const int primes[] = {7, 11, 13, 5, 17, 19, 23, 29};
     char text[4000];
+    imk_allan_log *a = NULL;
     imk_log_reader *reader;
     imk_error error;
-    int used = snprintf(text, sizeof text, "gyro_x [deg/s],gyro_z [deg/s],accel_x [g],%s\n", name);
+    size_t columns = 1, used = (size_t)snprintf(text, sizeof text, "%s\n", header);
+    for (const char *c = header; *c; c++)
+        columns += *c == ',';
     for (int i = 0; i < ROWS; i++)
-        used += snprintf(text + used, sizeof text - (size_t)used, "%d,%d,%d,%d\n", i * i % 7,
-                         i * i % 11, i * i % 13, i * i % 5);
+        for (size_t c = 0; c < columns; c++)
+            used += (size_t)snprintf(text + used, sizeof text - used, "%d%s", i * i % primes[c],
+                                     c + 1 < columns ? "," : "\n");
     imk_log_settings reading = imk_log_default();
     reading.rate = 100;
-    CHECK_OK(imk_log_open_memory(text, (size_t)used, &reading, &reader, &error));
+    CHECK_OK(imk_log_open_memory(text, used, &reading, &reader, &error));
     const imk_record_source source = imk_log_source(reader);
     const imk_allan_log_settings settings = imk_allan_log_default();
-    CHECK_OK(imk_allan_log_run(&source, &settings, NULL, a, &error));
+    CHECK_OK(imk_allan_log_run(&source, &settings, NULL, &a, &error));
     imk_log_close(reader);
+    return a;
+}
+
+/* What is told of one more column beside gyro_x, gyro_z, accel_x. */
+static const imk_finding *told(const char *name, imk_allan_log **a)
+{
+    char header[200];
+    snprintf(header, sizeof header, "gyro_x [deg/s],gyro_z [deg/s],accel_x [g],%s", name);
+    *a = log_of(header);
     for (size_t k = 0; k < (*a)->findings.count; k++)
         if (strncmp((*a)->findings.item[k].code, "unused", 6) == 0)
             return &(*a)->findings.item[k];
@@ -150,12 +164,55 @@ static void test_what_is_something_else(void **state)
     }
 }
 
+static bool has(const imk_findings *findings, const char *code, imk_finding_level level)
+{
+    for (size_t k = 0; k < findings->count; k++)
+        if (strcmp(findings->item[k].code, code) == 0 && findings->item[k].level == level)
+            return true;
+    return false;
+}
+
+/* All axes are misspelt, or are in another language, or no sensor is read at all. */
+static void test_a_whole_sensor(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *header;
+        bool sensor, channels; /* told of */
+    } logs[] = {
+        {"gryo_x,gryo_y,gryo_z,accel_x [g],accel_y [g],accel_z [g]", true, false},
+        {"giro_x [deg/s],giro_y [deg/s],giro_z [deg/s],accel_x [g]", true, false},
+        {"velang_x [rad/s],velang_y [rad/s],velang_z [rad/s],accel_x [g]", true, false},
+        {"gyro_x [deg/s],Beschl_x [m/s^2],Beschl_y [m/s^2],Beschl_z [m/s^2]", true, false},
+        {"Drehrate_x [deg/s],Drehrate_y [deg/s],Drehrate_z [deg/s],temperature [degC]", true, true},
+        {"accel_x [g],reference_rate_x [deg/s],reference_rate_y [deg/s],reference_rate_z [deg/s]",
+         false, false},
+        {"accel_x [g],table_rate [deg/s],roll_rate [deg/s]", false, false},
+        {"gyro_x [deg/s],vel_x [m/s],vel_y [m/s],vel_z [m/s]", false, false},
+        {"gyro_x [deg/s],angle_x [deg],angle_y [deg],angle_z [deg]", false, false},
+        {"gyro_x [deg/s],mag_x [uT],mag_y [uT],mag_z [uT]", false, false},
+        {"gyro_x [deg/s],pressure,altitude [m]", false, false},
+    };
+    for (size_t k = 0; k < sizeof logs / sizeof logs[0]; k++) {
+        imk_allan_log *a = log_of(logs[k].header);
+        if (has(&a->findings, "unused_sensor", IMK_FINDING_WARNING) != logs[k].sensor ||
+            has(&a->findings, "unknown_channels", IMK_FINDING_WARNING) != logs[k].channels)
+            fail_msg("%s", logs[k].header);
+        imk_allan_log_free(a);
+    }
+    /* Channels of no sensor are a note. */
+    imk_allan_log *a = log_of("temperature [degC],pressure");
+    assert_true(has(&a->findings, "unknown_channels", IMK_FINDING_NOTE));
+    imk_allan_log_free(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_missing_axis_is_a_warning),
         cmocka_unit_test(test_others_are_notes),
         cmocka_unit_test(test_what_is_something_else),
+        cmocka_unit_test(test_a_whole_sensor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -108,7 +108,7 @@ static void list_parameters(imki_joint_fit *j)
 
 static size_t band_at(const imki_bands *bands, double frequency)
 {
-    size_t low = 0, high = bands->count - 1;
+    size_t low = 0, high = bands->count > 0 ? bands->count - 1 : 0;
     while (low < high) {
         const size_t middle = (low + high) / 2;
         if (bands->frequency[middle] < frequency)

@@ -137,6 +137,10 @@ static void set_rounding(imki_bands *bands, double step)
     bands->rounding = white ? step * step / 12 * bands->dt : 0;
 }
 
+/* Lines beside each other all over the spectrum, as of faults at a regular distance, would leave
+ * nothing between them: then they are no lines. */
+enum { BANDS_LEAST = 8 };
+
 static void build_bands(imki_work *w, const imk_identification *result)
 {
     const double dt = w->settings->dt;
@@ -144,6 +148,11 @@ static void build_bands(imki_work *w, const imk_identification *result)
     if (w->spectrum_count == 0) {
         imki_bands_build(w->bands, w->n, dt, w->coefficients, w->cumulative, w->line_count,
                          w->lines, resonances, result->resonance);
+        if (w->bands->count < BANDS_LEAST && w->line_count > 0) {
+            w->line_count = 0;
+            imki_bands_build(w->bands, w->n, dt, w->coefficients, w->cumulative, 0, w->lines,
+                             resonances, result->resonance);
+        }
         if (w->missing)
             imki_missing_weigh(w->missing, w->bands);
         return;

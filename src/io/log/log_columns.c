@@ -115,9 +115,9 @@ static void split_unit(imki_log_piece *name, imki_log_piece *unit)
     trim(unit);
 }
 
-static const char *unit_setting(const kind *k, const imk_log_settings *settings)
+static const char *unit_setting(imk_quantity quantity, const imk_log_settings *settings)
 {
-    switch (k->quantity) {
+    switch (quantity) {
     case IMK_QUANTITY_TIME:
         return settings->time_unit;
     case IMK_QUANTITY_ANGULAR_RATE:
@@ -130,6 +130,29 @@ static const char *unit_setting(const kind *k, const imk_log_settings *settings)
     case IMK_QUANTITY_OTHER:
         break;
     }
+    return NULL;
+}
+
+/* Is this the unit of the text? */
+static bool is_unit(const imk_unit *unit, const char *text)
+{
+    imk_unit other;
+    return imk_unit_parse(text, text + strlen(text), &other, NULL) == IMK_OK &&
+           imk_dimension_equal(unit->dimension, other.dimension) &&
+           fabs(unit->scale - other.scale) <= 1e-12 * fabs(other.scale) &&
+           unit->offset == other.offset;
+}
+
+const char *imk_log_unit_ignored(const imk_log_reader *reader, const imk_log_settings *settings,
+                                 imk_quantity quantity, const imk_log_column **column)
+{
+    const char *text = unit_setting(quantity, settings);
+    for (size_t i = 0; text && i < reader->layout.column_count; i++) {
+        *column = &reader->layout.column[i];
+        if ((*column)->quantity == quantity && !is_unit(&(*column)->unit, text))
+            return text;
+    }
+    *column = NULL;
     return NULL;
 }
 
@@ -177,7 +200,7 @@ imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *set
     column->increment = k->increment;
     const char *field = column->name;
     if (unit.begin == unit.end) {
-        const char *setting = unit_setting(k, settings);
+        const char *setting = unit_setting(k->quantity, settings);
         if (!setting)
             return imk_error_set(error, IMK_ERROR_UNIT_MISSING, "", column->name, k->due);
         unit = (imki_log_piece){setting, setting + strlen(setting)};
@@ -251,7 +274,7 @@ static imk_status check_settings(const imki_log_layout_read *layout,
                                  const imk_log_settings *settings, imk_error *error)
 {
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-        const char *text = unit_setting(&kinds[i], settings);
+        const char *text = unit_setting(kinds[i].quantity, settings);
         imk_unit unit;
         if (!text)
             continue;
@@ -268,6 +291,24 @@ static imk_status check_settings(const imki_log_layout_read *layout,
     return IMK_OK;
 }
 
+/* "tempo [s]" is a time by its unit. */
+static imk_status refuse_without_time(const imki_log_layout_read *layout, imk_error *error)
+{
+    char next[160] = "add --rate 100Hz (samples per second)";
+    for (size_t i = 0; i < layout->column_count; i++) {
+        const imk_log_column *c = &layout->column[i];
+        if (c->quantity == IMK_QUANTITY_OTHER &&
+            imk_dimension_equal(c->unit.dimension, imk_unit_of("s").dimension)) {
+            snprintf(next, sizeof next,
+                     "add --rate 100Hz (samples per second); if %.40s is the time, name it so "
+                     "with --columns, with a name for each column",
+                     c->name);
+            break;
+        }
+    }
+    return imk_error_set(error, IMK_ERROR_RATE_MISSING, "time", "the log has no time column", next);
+}
+
 /* Is any column of use? Is the time known? */
 static imk_status check_layout(const imki_log_layout_read *layout, const imk_log_settings *settings,
                                imk_error *error)
@@ -280,10 +321,8 @@ static imk_status check_layout(const imki_log_layout_read *layout, const imk_log
             error, IMK_ERROR_COLUMN, layout->column[0].name, "no column has a known name",
             "known are time, gyro_x, dtheta_x, accel_x, dvel_x, mag_x, temperature; add "
             "--columns with a name for each column (- skips a column)");
-    if (layout->time_column < 0 && settings->rate == 0.0)
-        return imk_error_set(error, IMK_ERROR_RATE_MISSING, "time", "the log has no time column",
-                             "add --rate 100Hz (samples per second)");
-    return IMK_OK;
+    return layout->time_column < 0 && settings->rate == 0.0 ? refuse_without_time(layout, error)
+                                                            : IMK_OK;
 }
 
 static imk_status add_cell(imki_log_layout_read *layout, size_t cell, imki_log_piece name,

@@ -94,6 +94,46 @@ imk_identify_moves imk_identify_log_moves(const imk_identify_log *log)
                                 .still_end = floor(10 * (double)still_end * dt) / 10};
 }
 
+/* What the screening saw in a channel that has no model. Codes of lost samples are many and far
+ * off; a motion has noise, too, but no sum of terms describes it. */
+static const char *why_no_model(const imk_screen *s, double numbers[3])
+{
+    const double far = 10, smooth = 0.3, normal = 0.2;
+    if (s->outliers.count > 0 && s->largest_outlier > far * s->outlier_threshold) {
+        numbers[0] = (double)s->outliers.count;
+        numbers[1] = (double)s->n;
+        numbers[2] = s->largest_outlier;
+        return "no_model:outliers";
+    }
+    if (s->steps.count > 0) {
+        numbers[0] = (double)s->steps.count;
+        numbers[1] = fabs(s->largest_step);
+        return "no_model:steps";
+    }
+    if (s->cycle_amplitude > smooth * s->deviation) {
+        numbers[0] = s->cycle_amplitude;
+        numbers[1] = s->cycle_period;
+        return "no_model:cycle";
+    }
+    return s->noise > smooth * s->deviation && fabs(s->core - 1) < normal ? "no_model:motion"
+                                                                          : "no_model:smooth";
+}
+
+static imk_status refuse_without_model(imk_identify_log *log, size_t channel, imk_error *error)
+{
+    const imk_log_column *column = imk_even_record_column(&log->record, channel);
+    const double scale = column->unit.scale > 0 ? column->unit.scale : 1;
+    double numbers[3] = {0};
+    char name[sizeof log->findings.item[0].name];
+    const char *code = why_no_model(&log->screen[channel], numbers);
+    const int size = strcmp(code, "no_model:outliers") == 0 ? 2
+                     : strcmp(code, "no_model:steps") == 0  ? 1
+                                                            : 0;
+    numbers[size] /= scale;
+    snprintf(name, sizeof name, "%.60s\t%.30s", column->name, column->unit.text);
+    return imki_fail(&log->findings, error, IMK_ERROR_NO_CONVERGENCE, code, name, 3, numbers);
+}
+
 imk_status imki_identify_explain(imk_identify_log *log, size_t channel, imk_status status,
                                  const imk_error *why, imk_error *error)
 {
@@ -114,6 +154,8 @@ imk_status imki_identify_explain(imk_identify_log *log, size_t channel, imk_stat
     if (status == IMK_ERROR_NO_CONVERGENCE && moves.moved)
         return imki_fail(&log->findings, error, status, "moved", name,
                          IMKI_NUMBERS(moves.first, moves.end, moves.still_first, moves.still_end));
+    if (status == IMK_ERROR_NO_CONVERGENCE)
+        return refuse_without_model(log, channel, error);
     imk_error named = *why;
     if (!named.field[0])
         snprintf(named.field, sizeof named.field, "%s", name);

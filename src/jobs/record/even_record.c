@@ -63,8 +63,11 @@ void imk_even_record_choose(imk_even_record *record)
 void imki_even_record_unused(const imk_even_record *record, imk_findings *findings)
 {
     const imk_quantity first = imk_even_record_column(record, 0)->quantity;
-    if (first == IMK_QUANTITY_ANGULAR_RATE || first == IMK_QUANTITY_SPECIFIC_FORCE)
+    const bool whole =
         imki_tell_unused(record->log.column_count, record->log.column, IMK_MAG, findings);
+    if (first != IMK_QUANTITY_ANGULAR_RATE && first != IMK_QUANTITY_SPECIFIC_FORCE)
+        imki_find(findings, whole ? IMK_FINDING_WARNING : IMK_FINDING_NOTE, "unknown_channels",
+                  NULL, 0, NULL);
 }
 
 /* Numbers that are no readings become NaN: missing. Times stay. */

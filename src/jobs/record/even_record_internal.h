@@ -36,8 +36,9 @@ imk_status imki_grid_jitter(const imk_even_record *record, imk_findings *finding
 void imki_grid_tell(const imk_even_record *record, size_t first_not_finite, imk_findings *findings);
 
 /* Tell of columns that resemble those of the first `kinds` kinds of sensors and are none: a note,
- * or a warning where an axis lacks between others of its sensor. */
-void imki_tell_unused(size_t count, const imk_log_column *columns, int kinds,
+ * or a warning where an axis lacks between others of its sensor, or the whole sensor.
+ * @return a whole sensor is not read */
+bool imki_tell_unused(size_t count, const imk_log_column *columns, int kinds,
                       imk_findings *findings);
 /* The same of a record whose channels are chosen. */
 void imki_even_record_unused(const imk_even_record *record, imk_findings *findings);

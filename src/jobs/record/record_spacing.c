@@ -214,11 +214,15 @@ static imk_status take_longest(double rate, const spacing *s, imk_even_record *r
                                imk_findings *findings, imk_error *error)
 {
     const size_t start = s->longest_start, length = s->longest_length;
-    const bool much = length < record->log.rows - record->log.rows / 100;
-    imki_find(
-        findings, IMK_FINDING_WARNING, much ? "stamps:longest_stretch" : "longest_stretch", NULL,
-        IMKI_NUMBERS((double)(s->not_finite + s->unordered), (double)s->missing,
-                     (double)(start + 1), (double)(start + length), (double)record->log.rows));
+    const size_t rows = record->log.rows;
+    imki_find(findings, IMK_FINDING_WARNING,
+              length < rows / 10           ? "stamps:short_stretch"
+              : length < rows - rows / 100 ? "stamps:longest_stretch"
+                                           : "longest_stretch",
+              NULL,
+              IMKI_NUMBERS((double)(s->not_finite + s->unordered), (double)s->missing,
+                           (double)(start + 1), (double)(start + length), (double)rows,
+                           100 * (double)length / (double)rows));
     if (length < 2)
         return imki_fail(findings, error, IMK_ERROR_GAP, "no_good_rows", NULL, 0, NULL);
     refine_interval(rate, record, start, start + length - 1, length - 1);

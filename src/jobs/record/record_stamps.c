@@ -296,6 +296,33 @@ static imk_status look_again(size_t n, const double *time, imki_arena *scratch,
     return IMK_OK;
 }
 
+/* Times from which no rate follows: the reason. */
+static imk_status refuse_times(const imk_log_findings *f, double first, imk_findings *findings,
+                               imk_error *error)
+{
+    const double rows = (double)f->rows, back = (double)f->reversals, same = (double)f->repeats;
+    const double even = 0.05; /* scatter of steps that are even [intervals] */
+    const char *code = "no_grid";
+    double numbers[3] = {100 * f->jitter / f->interval, f->interval};
+    if (!(f->interval > 0) && f->reversals == 0) {
+        code = "time_constant";
+        numbers[0] = first;
+    } else if (!(f->interval > 0) || back > rows / 2) {
+        code = "time_backwards";
+        numbers[0] = back;
+        numbers[1] = rows;
+    } else if (same > rows / 2 && f->jitter < even * f->interval) {
+        code = "time_digits";
+        numbers[0] = rows / (rows - same);
+    } else if (f->reversals > 0 && f->jitter < even * f->interval) {
+        code = "time_order";
+        numbers[0] = back;
+        numbers[1] = rows;
+        numbers[2] = f->largest_reversal;
+    }
+    return imki_fail(findings, error, IMK_ERROR_TIME_ORDER, code, NULL, 3, numbers);
+}
+
 /* The stamps of n rows in `time` become even, where they are not. */
 static imk_status settle(imki_stamps *s, size_t n, double *time, choice *c, imki_arena *scratch,
                          imk_log_findings *settled, imk_findings *findings, imk_error *error)
@@ -322,8 +349,7 @@ static imk_status settle(imki_stamps *s, size_t n, double *time, choice *c, imki
         return imk_error_set(error, IMK_ERROR_MEMORY, "time", NULL, NULL);
     const bool chosen = choose(n, time, room, c);
     if (!chosen || (double)c->reading.jumps > fmax(few_jumps, steps_back_most * (double)n))
-        return imki_fail(findings, error, IMK_ERROR_TIME_ORDER, "no_grid", NULL,
-                         IMKI_NUMBERS(100 * found.jitter / found.interval, found.interval));
+        return refuse_times(&found, settled->time_origin + time[0], findings, error);
     imki_stamp_reading final = {.interval = c->reading.interval,
                                 .threshold = c->reading.threshold,
                                 .window = c->reading.window,

@@ -3,7 +3,8 @@
  * "gyro y", "accel_z_raw". A name is taken apart into words at signs, capitals and figures. It
  * resembles a sensor's if a word is the sensor's, give or take a slip, another is an axis, and none
  * says that it is about something else, such as the standard deviation of readings. A unit of
- * another dimension rules a sensor out. */
+ * another dimension rules a sensor out. Of a sensor that is not read at all, the unit and an axis
+ * will do: three columns such as "Drehrate_x [deg/s]". */
 #include "even_record_internal.h"
 
 #include "base/text_internal.h"
@@ -131,6 +132,14 @@ static int joined(const imk_log_column *column, const char *word, bool short_too
     return -1;
 }
 
+static bool is_other(const char *word)
+{
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        if (strcmp(word, others[i]) == 0)
+            return true;
+    return false;
+}
+
 /* The sensor whose axis a column seems to be; -1: of none. */
 static int resembles(const imk_log_column *column, int *axis)
 {
@@ -138,9 +147,8 @@ static int resembles(const imk_log_column *column, int *axis)
     int sensor = -1, letter = -1, figure = -1;
     divide(column->name, &w);
     for (size_t k = 0; k < w.count; k++) {
-        for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
-            if (strcmp(w.word[k], others[i]) == 0)
-                return -1;
+        if (is_other(w.word[k]))
+            return -1;
         const int place = axis_of(w.word[k]);
         const bool is_figure = w.word[k][0] >= '0' && w.word[k][0] <= '9';
         int found = -1, its = -1;
@@ -168,6 +176,37 @@ static bool has(size_t count, const imk_log_column *columns, int sensor, int axi
     return false;
 }
 
+/* The sensor that a column is by its unit, whatever its name; -1: none. */
+static int sensor_of_unit(const imk_log_column *column, int *axis)
+{
+    words w;
+    *axis = -1;
+    divide(column->name, &w);
+    for (size_t k = 0; k < w.count; k++) {
+        if (is_other(w.word[k]))
+            return -1;
+        *axis = axis_of(w.word[k]) >= 0 ? axis_of(w.word[k]) : *axis;
+    }
+    for (int sensor = 0; sensor < IMK_KINDS && *axis >= 0 && *axis < 3; sensor++)
+        if (imk_dimension_equal(column->unit.dimension,
+                                imk_unit_of(sensors[sensor].unit).dimension))
+            return sensor;
+    return -1;
+}
+
+/* Are three axes of a sensor in columns of its unit that nothing reads? */
+static bool triad_by_unit(size_t count, const imk_log_column *columns, int sensor)
+{
+    bool found[3] = {false};
+    for (size_t k = 0; k < count; k++) {
+        int axis;
+        if (columns[k].quantity == IMK_QUANTITY_OTHER && !columns[k].label &&
+            sensor_of_unit(&columns[k], &axis) == sensor)
+            found[axis] = true;
+    }
+    return found[0] && found[1] && found[2];
+}
+
 /* One more of a list that may become too long for its text. */
 static void list(char *text, size_t size, const char *item)
 {
@@ -180,30 +219,54 @@ static void list(char *text, size_t size, const char *item)
     imki_append_text(text, size, item);
 }
 
-void imki_tell_unused(size_t count, const imk_log_column *columns, int kinds,
+/* The columns that nothing reads and that seem to be of one sensor. */
+typedef struct likeness {
+    char names[60], likes[36];
+    bool any, lacking, named, sign;
+} likeness;
+
+/* @param by_unit  the unit of the sensor and an axis will do */
+static likeness look(size_t count, const imk_log_column *columns, int sensor, bool by_unit)
+{
+    likeness l = {.any = false};
+    char like[48];
+    for (size_t k = 0; k < count; k++) {
+        int axis = -1;
+        if (columns[k].quantity != IMK_QUANTITY_OTHER || columns[k].label ||
+            (resembles(&columns[k], &axis) != sensor &&
+             !(by_unit && sensor_of_unit(&columns[k], &axis) == sensor)))
+            continue;
+        imk_axis_name(sensors[sensor].name, axis, like);
+        l.any = true;
+        l.lacking =
+            l.lacking || (has(count, columns, sensor, -1) && !has(count, columns, sensor, axis));
+        l.named = l.named || strcmp(columns[k].name, like) == 0;
+        l.sign = l.sign || columns[k].name[0] == '-' || columns[k].name[0] == '+';
+        list(l.names, sizeof l.names, columns[k].name);
+        list(l.likes, sizeof l.likes, like);
+    }
+    return l;
+}
+
+bool imki_tell_unused(size_t count, const imk_log_column *columns, int kinds,
                       imk_findings *findings)
 {
+    bool whole = false;
     for (int sensor = 0; sensor < kinds; sensor++) {
-        char names[60] = "", likes[36] = "", like[48], both[96];
-        bool any = false, lacking = false, named = false, sign = false;
-        for (size_t k = 0; k < count; k++) {
-            int axis = -1;
-            if (columns[k].quantity != IMK_QUANTITY_OTHER || columns[k].label ||
-                resembles(&columns[k], &axis) != sensor)
-                continue;
-            imk_axis_name(sensors[sensor].name, axis, like);
-            any = true;
-            lacking =
-                lacking || (has(count, columns, sensor, -1) && !has(count, columns, sensor, axis));
-            named = named || strcmp(columns[k].name, like) == 0;
-            sign = sign || columns[k].name[0] == '-' || columns[k].name[0] == '+';
-            list(names, sizeof names, columns[k].name);
-            list(likes, sizeof likes, like);
-        }
-        if (!any)
+        /* A magnetometer beside the others is an extra, and often has no unit. */
+        const bool read = sensor == IMK_MAG || has(count, columns, sensor, -1);
+        const likeness l =
+            look(count, columns, sensor, !read && triad_by_unit(count, columns, sensor));
+        char both[sizeof l.names + sizeof l.likes];
+        if (!l.any)
             continue;
-        snprintf(both, sizeof both, "%s\t%s", names, likes);
-        imki_find(findings, lacking ? IMK_FINDING_WARNING : IMK_FINDING_NOTE,
-                  lacking ? "unused_axis" : "unused_columns", both, IMKI_NUMBERS(named, sign));
+        snprintf(both, sizeof both, "%s\t%s", l.names, l.likes);
+        imki_find(findings, l.lacking || !read ? IMK_FINDING_WARNING : IMK_FINDING_NOTE,
+                  !read       ? "unused_sensor"
+                  : l.lacking ? "unused_axis"
+                              : "unused_columns",
+                  both, IMKI_NUMBERS(l.named, l.sign));
+        whole = whole || !read;
     }
+    return whole;
 }

@@ -29,6 +29,10 @@ void imki_assess_samples(imk_verdict *verdict, const imk_identify_log *log);
 void imki_assess_terms(imk_verdict *verdict, const imk_identify_log *log);
 /* verdict_vibration.c: tones that several channels share. */
 void imki_assess_vibration(imk_verdict *verdict, const imk_identify_log *log);
+/* verdict_axes.c: an axis unlike the others of its triad; gyros with impossible numbers. */
+void imki_assess_axes(imk_verdict *verdict, const imk_identify_log *log);
+/* verdict_untestable.c: what no log of this kind can show. */
+void imki_assess_untestable(imk_verdict *verdict, const imk_even_record *record);
 /* verdict_words.c */
 void imki_verdict_briefly(const imk_verdict *verdict, imk_result *result);
 

@@ -161,5 +161,7 @@ imk_verdict imk_several_verdict(const imk_identify_several *s, const char *const
         assess_runs(&v, s, labels);
     else
         assess_devices(&v, s, labels);
+    if (s->count > 0)
+        imki_assess_untestable(&v, &s->log[0]->record);
     return v;
 }

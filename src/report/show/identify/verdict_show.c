@@ -148,6 +148,7 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
     if (log->origin == IMK_IDENTIFY_CURVE)
         return v;
     assess_gravity(&v, log);
+    imki_assess_axes(&v, log);
     imki_assess_samples(&v, log);
     imki_assess_terms(&v, log);
     imki_assess_vibration(&v, log);
@@ -158,6 +159,8 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
         imki_verdict_add(&v, IMK_FINDING_NOTE, "bridged",
                          "%zu of %zu samples were bridged by straight lines.", log->record.bridged,
                          log->record.rows);
+    if (!label) /* of several logs, once for all: several_verdict.c */
+        imki_assess_untestable(&v, &log->record);
     if (!imk_verdict_warns(&v))
         imki_verdict_add(&v, IMK_FINDING_GOOD, "good", "No test found a fault in this record.");
     return v;

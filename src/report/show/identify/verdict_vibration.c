@@ -82,6 +82,16 @@ static bool is_overtone(const tone_list *list, double frequency, double duration
     return false;
 }
 
+/* A mean of neighbouring samples has zeros in its spectrum at the same frequencies on all channels.
+ * The model has no such filter, and explains it by a low-pass filter and tones. */
+static bool may_be_averaged(const imk_identify_log *log, uint64_t channels)
+{
+    for (size_t c = 0; c < log->record.count; c++)
+        if (!(log->result[c].filter.bandwidth > 0) || !(channels >> c & 1))
+            return false;
+    return true;
+}
+
 void imki_assess_vibration(imk_verdict *v, const imk_identify_log *log)
 {
     tone_list list;
@@ -102,10 +112,18 @@ void imki_assess_vibration(imk_verdict *v, const imk_identify_log *log)
         told[count++] = f;
         channels |= name_tone(&list, f, log->duration, &text);
     }
+    const bool averaged = may_be_averaged(log, channels);
     imki_verdict_list(v, IMK_FINDING_NOTE, "vibration",
-                      "several channels have the same tones: what the sensor stands on vibrates (a "
-                      "fan, a motor, the building), at ",
+                      averaged ? "all channels have the same tones and a low-pass filter: what the "
+                                 "sensor stands on vibrates (a fan, a motor, the building), or the "
+                                 "logger wrote averages of several samples, at "
+                               : "several channels have the same tones: what the sensor stands on "
+                                 "vibrates (a fan, a motor, the building), at ",
                       &text, "; they are modelled, but are none of the sensor's own.");
-    if (channels)
-        imki_verdict_about(v, &log->record, channels);
+    if (!channels)
+        return;
+    imki_verdict_about(v, &log->record, channels);
+    if (averaged && v->message && v->count > 0 && !v->label)
+        v->message[v->count - 1].brief = "Vibration of what the sensor stands on, or averages of "
+                                         "the logger: all channels.";
 }

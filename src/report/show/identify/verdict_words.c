@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A verdict in one sentence, and its messages in a few words. Every code has a clause for the
- * sentence and a title for the list; %s stands for the channels. The whole text of a message is for
- * the page and the JSON. */
+ * sentence and a title for the list; %s stands for the channels, {looks|look} for the word of one
+ * channel and that of several. The whole text of a message is for the page and the JSON. */
 #include "identify_show_internal.h"
 
 #include "report/result_internal.h"
@@ -26,7 +26,7 @@ static const struct words {
     {"ends", "the values of %s end abruptly, as if they were limited",
      "Values that end abruptly: %s."},
     {"frozen", "samples are repeated in %s, so that the true rate is lower", "Repeats: %s."},
-    {"interpolated", "%s look interpolated from a slower sensor, so that noise is missing",
+    {"interpolated", "%s {looks|look} interpolated from a slower sensor, so that noise is missing",
      "Interpolated from a slower sensor: %s."},
     {"alternating", "the noise of %s alternates from row to row",
      "Noise that alternates from row to row: %s."},
@@ -41,7 +41,7 @@ static const struct words {
     {"lost", NULL, "Rows that were lost and written as a number, left out: %s."},
     {"zeros", "values of %s near zero were put to zero, or all were cut off toward zero",
      "More zeros than the noise has: %s."},
-    {"dead", "%s stands still for a part of the log", "Standing still: %s."},
+    {"dead", "%s {stands|stand} still for a part of the log", "Standing still: %s."},
     {"unrest", "the slow terms of %s are larger than those of a sensor at rest",
      "Fluctuations larger than those of a sensor at rest: %s."},
     {"behind_filter", "the white noise of %s may be larger, behind a low-pass filter",
@@ -56,6 +56,7 @@ static const struct words {
      "Terms that can replace each other: %s."},
     {"stamps:unordered", "rows whose time does not increase are left out", NULL},
     {"stamps:longest_stretch", "only the longest part without missing samples is used", NULL},
+    {"stamps:short_stretch", "less than a tenth of the rows is used, as the rest has faults", NULL},
     {"stamps:coarse", "one stamp is that of several rows", NULL},
     {"stamps:bunched", "rows are stamped in bunches", NULL},
     {"stamps:late", "rows are stamped late", NULL},
@@ -66,6 +67,10 @@ static const struct words {
     {"stamps:held", "rows repeat the samples of a slower sensor", NULL},
     {"stamps:rate_differs", "--rate is not the rate of the time column", NULL},
     {"unused_axis", "an axis is missing, and a column that looks like it is not used", NULL},
+    {"unused_sensor", "a sensor that seems to be in the log is not read", NULL},
+    {"unknown_channels", "no column is read as one of a gyro or an accelerometer", NULL},
+    {"gyro_size", "the numbers of %s are no gyro's at rest: a wrong unit, or the sensor turned",
+     "Numbers that no gyro at rest has: %s."},
     {"copy", "a column is the copy of another", NULL},
     {"follows", "a column is computed from another", NULL},
     {"runs_differ", "the logs do not have the same noise", NULL},
@@ -149,10 +154,17 @@ static void name_channels(const imk_even_record *record, uint64_t channels, imki
         imki_text_add(text, "%s%s", k == 0 ? "" : k + 1 == count ? " and " : ", ", names[k]);
 }
 
-/* A pattern with %s replaced; without a channel "the record". */
-static const char *filled(imk_verdict *v, const char *pattern, const char *names)
+/* A pattern with %s and {one|several} replaced. */
+static const char *filled(imk_verdict *v, const char *pattern, const char *names, bool several)
 {
-    const char *place = strstr(pattern, "%s");
+    const char *place = strstr(pattern, "%s"), *open = strchr(pattern, '{');
+    const char *bar = open ? strchr(open, '|') : NULL, *close = bar ? strchr(bar, '}') : NULL;
+    if (close) {
+        const char *word = several ? bar + 1 : open + 1, *end = several ? close : bar;
+        pattern = imk_result_key(v->result, "%.*s%.*s%s", (int)(open - pattern), pattern,
+                                 (int)(end - word), word, close + 1);
+        place = strstr(pattern, "%s");
+    }
     if (!place)
         return pattern;
     return imk_result_key(v->result, "%.*s%s%s", (int)(place - pattern), pattern, names, place + 2);
@@ -178,8 +190,9 @@ void imki_verdict_about(imk_verdict *v, const imk_even_record *record, uint64_t 
         name_channels(record, channels, &names);
     if (w && !names.failed && names.bytes) {
         const char *text = names.size > 0 ? names.bytes : "the record";
-        m->clause = w->clause ? filled(v, w->clause, text) : NULL;
-        m->brief = w->title ? filled(v, w->title, text) : NULL;
+        const bool several = (channels & (channels - 1)) != 0;
+        m->clause = w->clause ? filled(v, w->clause, text, several) : NULL;
+        m->brief = w->title ? filled(v, w->title, text, several) : NULL;
         if (v->label && m->brief)
             m->brief = imk_result_key(v->result, "%.200s: %s", v->label, m->brief);
     }
@@ -251,7 +264,8 @@ const char *imk_identify_sentence(const imk_verdict *v)
     if (left > 0)
         text = imk_result_key(v->result, "%s; and %zu more", text, left);
     const size_t length = strlen(text);
-    return length > 0 && text[length - 1] == '.' ? text : imk_result_key(v->result, "%s.", text);
+    return length > 0 && strchr(".?", text[length - 1]) ? text
+                                                        : imk_result_key(v->result, "%s.", text);
 }
 
 /* ---- list ------------------------------------------------------------------------------------ */
@@ -264,9 +278,25 @@ static size_t count_words(const char *text)
     return count;
 }
 
+/* What no log can show is never left out: it belongs to every all-clear. */
+static bool is_of_limits(const imk_message *m)
+{
+    return strcmp(m->code, "not_testable") == 0;
+}
+
+static size_t words_of_limits(const imk_verdict *v)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < v->count; k++) {
+        const imk_message *m = &v->message[k];
+        count += is_of_limits(m) ? count_words(m->brief ? m->brief : m->text) : 0;
+    }
+    return count;
+}
+
 void imki_verdict_briefly(const imk_verdict *v, imk_result *result)
 {
-    size_t used = count_words(imk_identify_sentence(v)), left = 0;
+    size_t used = count_words(imk_identify_sentence(v)) + words_of_limits(v), left = 0;
     bool more = false;
     for (size_t k = 0; k < v->count; k++) {
         const imk_message *m = &v->message[k];
@@ -274,8 +304,9 @@ void imki_verdict_briefly(const imk_verdict *v, imk_result *result)
         if (strcmp(m->code, "good") == 0 || (m->level >= IMK_FINDING_WARNING && !m->brief))
             continue;
         more = more || m->brief != NULL;
-        used += count_words(text);
-        if (used > WORDS_MOST)
+        const bool limits = is_of_limits(m);
+        used += limits ? 0 : count_words(text);
+        if (used > WORDS_MOST && !limits)
             left++;
         else
             imk_result_line(result, "%s", text);
