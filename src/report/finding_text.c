@@ -106,9 +106,8 @@ static const struct message {
      "sensor, or keep new samples only"},
     {"copy", "{name} has the values of {other} in every row: one of the two is a copy, so give the "
              "right columns with --columns"},
-    {"follows",
-     "the changes of {name} are those of {other}, times {0.4g}: two sensors have noise "
-     "of their own, so one of the two is computed from the other; leave it out"},
+    {"follows", "the changes of {name} are those of {other}, times {0.4g}: two sensors have noise "
+                "of their own, so one of the two is computed from the other; leave it out"},
     {"stamps:rate_differs", "--rate says {0.7g} Hz, but the time column {1.7g} Hz; --rate is used, "
                             "and every result follows from it: check which one is right"},
     /* record_spacing.c */

@@ -228,8 +228,7 @@ static void tell_copies(const imki_repeat_counts *s, const imk_log_column *colum
             if (copy)
                 imki_find(findings, IMK_FINDING_WARNING, "copy", names, 0, NULL);
             else
-                imki_find(findings, IMK_FINDING_WARNING, "follows", names,
-                          IMKI_NUMBERS(factor));
+                imki_find(findings, IMK_FINDING_WARNING, "follows", names, IMKI_NUMBERS(factor));
             break;
         }
 }
