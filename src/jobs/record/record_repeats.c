@@ -94,7 +94,7 @@ static void compare_channels(imki_repeat_counts *s, size_t rows, double *const *
 /* Missing samples count nothing. */
 static void add_products(imki_repeat_counts *s, size_t rows, double *const *columns, size_t first)
 {
-    for (size_t b = 0; b < s->channels; b++)
+    for (size_t b = 0; b < s->channels && b < IMKI_REPEAT_AXES; b++)
         for (size_t a = 0; a <= b; a++) {
             const double *x = columns[s->column[a]] + first, *y = columns[s->column[b]] + first;
             double sum = 0;
@@ -206,6 +206,8 @@ static bool is_copy(const imki_repeat_counts *s, size_t a, size_t b)
 static bool follows(const imki_repeat_counts *s, size_t a, size_t b, double *factor)
 {
     const double own = 1e-3;
+    if (b >= IMKI_REPEAT_AXES)
+        return false;
     const double square = s->product[a][a] * s->product[b][b];
     *factor = s->product[a][a] > 0 ? s->product[a][b] / s->product[a][a] : 0;
     return s->rows >= LEAST && square > 0 && square < HUGE_VAL &&

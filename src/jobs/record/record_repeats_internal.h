@@ -6,6 +6,8 @@
 #include "imukit/job.h"
 #include "imukit/record.h"
 
+enum { IMKI_REPEAT_AXES = 8 };
+
 /* What is counted of one sensor: rows whose channels equal those of a row before, [0] of the next
  * row before, [1] of one far enough to be equal by chance only. */
 typedef struct imki_repeat_counts {
@@ -15,8 +17,8 @@ typedef struct imki_repeat_counts {
     /* of windows of rows: number, and sums of the repeats in one and of their squares */
     double windows, sum, square_sum;
     bool differ[IMK_LOG_COLUMNS_MAX][IMK_LOG_COLUMNS_MAX]; /* of channels, the earlier one first */
-    /* sums of products of their steps from row to row */
-    double product[IMK_LOG_COLUMNS_MAX][IMK_LOG_COLUMNS_MAX];
+    /* sums of products of the steps from row to row, of the first channels */
+    double product[IMKI_REPEAT_AXES][IMKI_REPEAT_AXES];
 } imki_repeat_counts;
 
 typedef struct imki_repeats {
