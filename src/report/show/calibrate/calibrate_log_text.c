@@ -299,6 +299,28 @@ static imki_calibrate_message left_handed(const imk_diagnostic_finding *d)
         sensor, imk_axis_letter(d->axis));
 }
 
+static imki_calibrate_message never_moves(const imk_calibrate_record *log)
+{
+    if (log->record.means)
+        return imki_calibrate_say(
+            IMK_FINDING_FAILURE, "never_moves",
+            "all rows are of one attitude: --pose-means needs a row for each of several "
+            "attitudes; if the rows are the samples of a log, leave --pose-means out");
+    if (log->interval_count > 1)
+        return imki_calibrate_say(
+            IMK_FINDING_FAILURE, "never_moves",
+            "all %zu rests have the same attitude to gravity: a turn about the vertical "
+            "(heading) changes nothing that accelerometers read. Put the unit on its other "
+            "faces, edges and corners; to identify the noise of a unit that was not moved, use "
+            "imukit identify",
+            log->interval_count);
+    return imki_calibrate_say(
+        IMK_FINDING_FAILURE, "never_moves",
+        "the unit is stationary in one pose all the time: turn the unit to other poses, "
+        "and hold each for some seconds; to identify the noise of a log at rest, use "
+        "imukit identify");
+}
+
 static imki_calibrate_message odd_turn(const imk_diagnostic_finding *d)
 {
     imki_calibrate_message message = {.level = IMK_FINDING_WARNING, .code = "odd_turn"};
@@ -315,24 +337,7 @@ imki_calibrate_message imki_message_on_log(const imk_calibrate_log *b,
     case IMK_DIAGNOSTIC_NEVER_STATIC:
         return never_static(b, log);
     case IMK_DIAGNOSTIC_NEVER_MOVES:
-        if (log->record.means)
-            return imki_calibrate_say(
-                IMK_FINDING_FAILURE, "never_moves",
-                "all rows are of one attitude: --pose-means needs a row for each of several "
-                "attitudes; if the rows are the samples of a log, leave --pose-means out");
-        if (log->interval_count > 1)
-            return imki_calibrate_say(
-                IMK_FINDING_FAILURE, "never_moves",
-                "all %zu rests have the same attitude to gravity: a turn about the vertical "
-                "(heading) changes nothing that accelerometers read. Put the unit on its other "
-                "faces, edges and corners; to identify the noise of a unit that was not moved, use "
-                "imukit identify",
-                log->interval_count);
-        return imki_calibrate_say(
-            IMK_FINDING_FAILURE, "never_moves",
-            "the unit is stationary in one pose all the time: turn the unit to other poses, "
-            "and hold each for some seconds; to identify the noise of a log at rest, use "
-            "imukit identify");
+        return never_moves(log);
     case IMK_DIAGNOSTIC_FEW_POSES:
         return few_poses(b, log, d);
     case IMK_DIAGNOSTIC_ONE_PLANE:

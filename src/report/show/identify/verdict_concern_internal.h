@@ -17,8 +17,7 @@ typedef struct imki_concern {
 
 /* One message, unless it holds on no channel: the channels, each with its details in parentheses.
  */
-void imki_assess_concern(imk_verdict *verdict, const imk_identify_log *log,
-                         const imki_concern *concern);
+void imki_assess_concern(imk_verdict *v, const imk_identify_log *log, const imki_concern *about);
 /* The unit for a value of a channel in its details. */
 imk_unit imki_concern_unit(const imk_identify_log *log, size_t channel, double value);
 
