@@ -1,41 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Values that end abruptly: limited, folded, rectified, wrapped, replaced; and noise that ends as
  * noise does. */
-#include "check.h"
-#include "imukit/noise.h"
-#include "imukit/record_screen.h"
+enum { SCREENED_SAMPLES = 60000 };
+#include "screened_noise.h"
 
 #include <math.h>
-#include <string.h>
-
-enum { N = 60000 };
-
-static double rate[N];
-static char memory[1 << 20];
-
-static void make(uint64_t seed, double flicker, double walk)
-{
-    static imk_white_state w;
-    static imk_flicker_state f;
-    static imk_random_walk_state k;
-    const imk_random random = imk_random_seeded(seed);
-    memset(rate, 0, sizeof rate);
-    imk_white_start(&w, 1, 1, random, 1);
-    imk_white_add(&w, N, rate);
-    imk_flicker_start(&f, flicker, 1, random, 2);
-    imk_flicker_add(&f, N, rate);
-    imk_random_walk_start(&k, walk, 1, random, 3);
-    imk_random_walk_add(&k, N, rate);
-}
-
-static imk_screen screen(void)
-{
-    imk_screen_settings settings = imk_screen_default();
-    settings.dt = 0.01;
-    imk_screen found;
-    CHECK_OK(imk_screen_channel(&settings, N, rate, &found, memory, sizeof memory, NULL));
-    return found;
-}
 
 typedef double (*distortion)(double x);
 static double clip(double x) /* and a calibration behind it, which leaves no two values equal */
@@ -70,7 +39,7 @@ static void test_abrupt(void **state)
     static const bool both[] = {true, true, false, true, true, true};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++)
         for (uint64_t seed = 0; seed < 4; seed++) {
-            make(seed, 0, 0);
+            make(seed, 0, 0, 0);
             for (size_t i = 0; i < N; i++)
                 rate[i] = all[k](rate[i]);
             const imk_screen found = screen();
@@ -89,7 +58,7 @@ static void test_sound(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < 160; seed++) {
         const bool heavy = seed % 5 == 2;
-        make(seed, !heavy && seed % 2 ? 0.5 : 0, !heavy && seed % 3 ? 0.02 : 0);
+        make(seed, 0, !heavy && seed % 2 ? 0.5 : 0, !heavy && seed % 3 ? 0.02 : 0);
         double filtered = rate[0];
         for (size_t i = 0; i < N; i++) {
             filtered += (seed % 5 == 1 ? 0.02 : 0.3) * (rate[i] - filtered);

@@ -1,40 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A sensor that was moved: at the start, in the middle, at the end; and what is no movement. */
-#include "check.h"
-#include "imukit/noise.h"
-#include "imukit/record_screen.h"
+enum { SCREENED_SAMPLES = 120000 };
+#include "screened_noise.h"
 
 #include <math.h>
-#include <string.h>
-
-enum { N = 120000 };
-
-static double rate[N];
-static char memory[1 << 20];
-
-static void make(uint64_t seed, double flicker, double walk)
-{
-    static imk_white_state w;
-    static imk_flicker_state f;
-    static imk_random_walk_state k;
-    const imk_random random = imk_random_seeded(seed);
-    memset(rate, 0, sizeof rate);
-    imk_white_start(&w, 1, 1, random, 1);
-    imk_white_add(&w, N, rate);
-    imk_flicker_start(&f, flicker, 1, random, 2);
-    imk_flicker_add(&f, N, rate);
-    imk_random_walk_start(&k, walk, 1, random, 3);
-    imk_random_walk_add(&k, N, rate);
-}
-
-static imk_screen screen(void)
-{
-    imk_screen_settings settings = imk_screen_default();
-    settings.dt = 0.01;
-    imk_screen found;
-    CHECK_OK(imk_screen_channel(&settings, N, rate, &found, memory, sizeof memory, NULL));
-    return found;
-}
 
 /* Swings of some seconds in samples first … end - 1. */
 static void swing(size_t first, size_t end, double amplitude)
@@ -51,7 +20,7 @@ static void test_moved(void **state)
     for (size_t k = 0; k < sizeof place / sizeof *place; k++)
         for (uint64_t seed = 0; seed < 4; seed++) {
             const size_t first = place[k][0], end = place[k][1];
-            make(seed, seed % 2 ? 0.3 : 0, 0.001);
+            make(seed, 0, seed % 2 ? 0.3 : 0, 0.001);
             swing(first, end, 60);
             const imk_screen found = screen();
             assert_int_equal(found.moved.runs, 1);
@@ -70,7 +39,7 @@ static void test_moved(void **state)
 static void test_twice(void **state)
 {
     (void)state;
-    make(9, 0.3, 0);
+    make(9, 0, 0.3, 0);
     swing(0, 2000, 60);
     swing(90000, 91000, 60);
     const imk_screen found = screen();
@@ -85,7 +54,7 @@ static void test_still(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < 40; seed++) {
         const bool bursts = seed % 5 == 3; /* of white noise */
-        make(seed, bursts ? 0 : seed % 4 == 0 ? 5 : 0.3, !bursts && seed % 4 == 1 ? 0.3 : 0);
+        make(seed, 0, bursts ? 0 : seed % 4 == 0 ? 5 : 0.3, !bursts && seed % 4 == 1 ? 0.3 : 0);
         for (size_t i = 0; i < N; i++) {
             const double x = (double)i;
             rate[i] += seed % 5 == 0   ? 20 * sin(0.002 * x)

@@ -1,40 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Zeros that stand for lost rows, small values put to zero, values cut off toward zero: told apart
  * from zeros that are measurements. */
-#include "check.h"
-#include "imukit/noise.h"
-#include "imukit/record_screen.h"
+enum { SCREENED_SAMPLES = 60000 };
+#include "screened_noise.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { N = 60000 };
-
-static double rate[N], clean[N];
-static char memory[1 << 20];
-
-/* White noise of standard deviation 1 about a level, with a random walk. */
-static void make(uint64_t seed, double level, double walk)
-{
-    static imk_white_state w;
-    static imk_random_walk_state k;
-    const imk_random random = imk_random_seeded(seed);
-    for (size_t i = 0; i < N; i++)
-        rate[i] = level;
-    imk_white_start(&w, 1, 1, random, 1);
-    imk_white_add(&w, N, rate);
-    imk_random_walk_start(&k, walk, 1, random, 2);
-    imk_random_walk_add(&k, N, rate);
-}
-
-static imk_screen screen(void)
-{
-    imk_screen_settings settings = imk_screen_default();
-    settings.dt = 0.01;
-    imk_screen found;
-    CHECK_OK(imk_screen_channel(&settings, N, rate, &found, memory, sizeof memory, NULL));
-    return found;
-}
+static double clean[N];
 
 static void round_to(double step)
 {
@@ -49,7 +22,7 @@ static void test_lost(void **state)
     static const size_t every[] = {5000, 100, 20, 5};
     for (size_t k = 0; k < 4; k++) {
         size_t lost, written = 0;
-        make(k, 9.8, 0);
+        make(k, 9.8, 0, 0);
         for (size_t i = every[k] / 2; i < N; i += every[k], written++)
             rate[i] = 0;
         const imk_screen found = screen();
@@ -77,7 +50,7 @@ static void test_code(void **state)
     for (size_t k = 0; k < 4; k++)
         for (size_t every = 97; every < 3000; every += 1400) {
             size_t written = 0;
-            make(k, 3, k % 2 ? 0.01 : 0);
+            make(k, 3, 0, k % 2 ? 0.01 : 0);
             for (size_t i = 50; i < N; i += every, written++)
                 rate[i] = code[k];
             const imk_screen found = screen();
@@ -86,7 +59,7 @@ static void test_code(void **state)
             assert_int_equal(found.outliers.count, 0);
             assert_false(found.heavy_tails);
             assert_true(found.resolution == 0);
-            make(k, 3, 0);
+            make(k, 3, 0, 0);
             rate[1000] = code[k];
             assert_int_equal(screen().lost.count, 0);
         }
@@ -97,19 +70,19 @@ static void test_too_many(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 6; seed++) {
-        make(seed, 0.3, 0);
+        make(seed, 0.3, 0, 0);
         round_to(0.01);
         for (size_t i = 0; i < N; i++)
             rate[i] = fabs(rate[i]) < 0.5 ? 0 : rate[i];
         /* P(|x + 0.3| < 0.5), less those of the steps around */
         CHECK_CLOSE(screen().zeros, 0.367, 0.02);
         const double step = seed % 2 ? 0.2 : 0.6;
-        make(seed, 0.2, 0);
+        make(seed, 0.2, 0, 0);
         for (size_t i = 0; i < N; i++)
             rate[i] = step * trunc(rate[i] / step);
         /* A cell of zeros twice as wide. */
         CHECK_CLOSE(screen().zeros / step, 0.39, 0.08);
-        make(seed, 0.1, 0);
+        make(seed, 0.1, 0, 0);
         for (size_t i = 0; i < N; i++) /* not rounded, rarely zero */
             rate[i] = i % 20 == 0 ? 0 : rate[i];
         CHECK_CLOSE(screen().zeros, 0.05, 0.001);
@@ -124,7 +97,7 @@ static void test_sound(void **state)
     static const double steps[] = {0.02, 0.1, 0.15, 0.3, 0.5, 0.8, 1, 1.3, 1.6, 2};
     for (uint64_t seed = 0; seed < 24; seed++) {
         const double level = 0.13 * (double)(seed % 8);
-        make(seed, level, seed % 3 ? 0 : 0.01);
+        make(seed, level, 0, seed % 3 ? 0 : 0.01);
         memcpy(clean, rate, sizeof rate);
         for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
             memcpy(rate, clean, sizeof rate);
