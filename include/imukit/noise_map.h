@@ -107,8 +107,9 @@ typedef struct imk_noise_changes_settings {
     uint32_t cookie;
     double dt;           /**< sample interval [s]; must be set */
     double confidence;   /**< of the intervals; default 0.95 */
-    double significance; /**< false-alarm rate of each of the tests (changes, tails, bursts), all
-                            octaves and times together; default 1e-3 */
+    double significance; /**< false-alarm rate of each of the tests (changes of an octave, changes
+                            of the slow noise as a whole, tails, bursts), all octaves and times
+                            together; default 1e-3 */
 } imk_noise_changes_settings;
 
 /** The defaults stated above; dt must be set. */
