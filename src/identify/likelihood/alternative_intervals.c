@@ -3,14 +3,14 @@
  *
  * A random walk or a ramp, bias instability or a Gauss-Markov term: often two sets of terms explain
  * a record about as well, and the intervals of the chosen one state as known what it leaves out.
- * With m a set, L_m(x) its likelihood with a parameter held at x and p_m its number of parameters,
- * the interval is where
+ * With m a set, 0 the chosen one, L_m(x) the likelihood with a parameter held at x and c_m the cost
+ * of a set, the interval is where one of the sets that the search has met has
  *
- *     max_m [L_m(x) - p_m] >= max_m [L_m - p_m] - drop
+ *     L_m(x) >= L_m - drop + max(0, [L_0 - c_0] - [L_m - c_m])
  *
- * among the sets that the search has met: the charge of one unit for a parameter makes likelihoods
- * of different sets comparable [AKAIKE1978]. A term whose interval then begins at zero is not
- * certain: the record could hold something else in its place. */
+ * A cost of about one unit for a parameter makes likelihoods of different sets comparable
+ * [AKAIKE1978]. A term whose interval then begins at zero is not certain: the record could hold
+ * something else in its place. */
 #include "identify/joint/joint_shape_internal.h"
 
 #include <math.h>
@@ -128,35 +128,80 @@ static void join_set(imki_work *w, imk_identification *result, double drop)
  * of its likelihood is less than this. */
 static const double UNSETTLED = 3;
 
-static void join_near(imki_work *w, imk_identification *result, double best, double drop)
+/* Worth of the chosen set, and most of those met. */
+typedef struct standing {
+    double chosen, most;
+} standing;
+
+static void join_near(imki_work *w, imk_identification *result, standing *s, double drop)
 {
-    const double left = drop - (best - worth(w->fit));
+    const double here = worth(w->fit), left = drop - (s->chosen - here);
+    s->most = fmax(s->most, here);
     if (left > 0.01 * drop)
         join_set(w, result, fmin(left, drop));
 }
 
 /* The fit's set with quantization or without, the other way round. */
-static void join_quantization(imki_work *w, imk_identification *result, double best, double drop)
+static void join_quantization(imki_work *w, imk_identification *result, standing *s, double drop)
 {
     imki_fit *fit = w->fit;
     const bool without = !fit->active[IMK_NOISE_QUANTIZATION];
     imki_quantization_switch(w);
     if (!without || has_quantization(fit)) /* else the same set */
-        join_near(w, result, best, drop);
+        join_near(w, result, s, drop);
+}
+
+/* White noise is the same in all sets: the chosen one, too, adds to its interval only what is left
+ * to it behind the set that is worth most. Of a slow term the chosen set keeps its whole interval:
+ * the others differ in what they leave to that term. */
+static void begin_white(imk_estimate *e)
+{
+    e->lower = fmin(e->value, e->free_value);
+    e->upper = fmax(e->value, e->free_value);
+}
+
+static void end_white(imki_work *w, const standing *s, double drop, imk_estimate *e)
+{
+    const double left = drop - (s->most - s->chosen);
+    if (left > 0.01 * drop)
+        join_strength(w, IMK_NOISE_WHITE, left, e);
 }
 
 /* A resonance at the least quality that is tried is a wider one, or another shape. What it leaves
  * over has its frequencies, and a Gauss-Markov term with a corner there may be nothing else. */
-static void doubt_beside_widest(imk_identification *result)
+static bool is_rest(const imk_identification *result, double correlation_time)
 {
-    for (int r = 0; r < result->resonance_count; r++)
-        for (int i = 0; i < result->gauss_markov_count; i++) {
-            struct imk_gauss_markov_estimate *g = &result->gauss_markov[i];
-            const double corner = 1 / (6.283185307179586 * g->correlation_time.value);
-            const double ratio = corner / result->resonance[r].frequency;
-            if (result->resonance[r].q < 1.001 * IMKI_WIDEST && ratio > 0.1 && ratio < 10)
-                g->sigma.lower = 0;
+    const double corner = 1 / (6.283185307179586 * correlation_time);
+    for (int r = 0; r < result->resonance_count; r++) {
+        const double ratio = corner / result->resonance[r].frequency;
+        if (result->resonance[r].q < 1.001 * IMKI_WIDEST && ratio > 0.1 && ratio < 10)
+            return true;
+    }
+    return false;
+}
+
+/* Such a term takes white noise and bias instability below its corner: their intervals cover those
+ * without it, however much it adds to the likelihood. */
+static void join_without_rest(imki_work *w, imk_identification *result, double drop)
+{
+    imki_fit *fit = w->fit;
+    bool any = false;
+    for (int i = 0; i < result->gauss_markov_count; i++)
+        if (is_rest(result, result->gauss_markov[i].correlation_time.value)) {
+            result->gauss_markov[i].sigma.lower = 0;
+            any = true;
         }
+    if (!any)
+        return;
+    for (size_t i = 0; i < IMKI_GAUSS_MARKOV_MAX; i++) {
+        const size_t slot = IMKI_FIRST_GAUSS_MARKOV + i;
+        if (fit->active[slot] && is_rest(result, fit->correlation_time[i])) {
+            fit->active[slot] = false;
+            fit->amount[slot] = 0;
+        }
+    }
+    imki_intervals_free(w, IMKI_HELD_NONE);
+    join_set(w, result, drop);
 }
 
 void imki_intervals_join(imki_work *w, imk_identification *result, double drop)
@@ -167,21 +212,26 @@ void imki_intervals_join(imki_work *w, imk_identification *result, double drop)
     result->ambiguous = uncertain_of(result);
     imki_intervals_free(w, IMKI_HELD_NONE);
     result->instead = result->ambiguous ? others_of(fit, result) : 0;
-    const double best = worth(fit);
+    const imki_amounts freed = imki_fit_keep(fit);
+    standing s = {worth(fit), worth(fit)};
     const size_t count = count_gauss_markov(fit);
-    join_quantization(w, result, best, drop);
+    begin_white(&result->term[IMK_NOISE_WHITE]);
+    join_quantization(w, result, &s, drop);
     for (size_t ramp = 0; ramp < 2; ramp++)
         for (size_t i = 0; i < IMKI_ALTERNATIVE_COUNTS; i++) {
             const double cost = cost_of(ramp > 0, i);
             if ((ramp == chosen.ramp_active && i == count) ||
-                !(met->log_likelihood[ramp][i] - cost + UNSETTLED > best - drop))
+                !(met->log_likelihood[ramp][i] - cost + UNSETTLED > s.chosen - drop))
                 continue;
             imki_fit_restore(fit, w->bands, &met->set[ramp][i]);
             imki_intervals_free(w, IMKI_HELD_NONE);
-            join_near(w, result, best, drop);
-            join_quantization(w, result, best, drop);
+            join_near(w, result, &s, drop);
+            join_quantization(w, result, &s, drop);
         }
+    imki_fit_restore(fit, w->bands, &freed);
+    end_white(w, &s, drop, &result->term[IMK_NOISE_WHITE]);
     imki_fit_restore(fit, w->bands, &chosen);
-    doubt_beside_widest(result);
+    join_without_rest(w, result, drop);
+    imki_fit_restore(fit, w->bands, &chosen);
     result->ambiguous = uncertain_of(result);
 }
