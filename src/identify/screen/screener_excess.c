@@ -9,13 +9,13 @@
 
 #include <math.h>
 
-enum { EARLY = 24, EVERY = 8 };
+enum { EVERY = 8 };
 
 static const double deviations = 6;
 
 bool imki_screen_counts(size_t chunk)
 {
-    return chunk < EARLY || chunk % EVERY == 0;
+    return chunk < IMKI_SCREEN_EARLY || chunk % EVERY == 0;
 }
 
 double imki_excess_share(const imki_excess *e, double least, double factor)

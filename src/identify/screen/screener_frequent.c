@@ -9,9 +9,10 @@
  *     ln n_0 = 3 ln n_1 - 3 ln n_2 + ln n_3
  *
  * is how many are due, the mean of both sides. Tails that are heavier than Gaussian ones make this
- * too large, and by how much values farther off differ from it is its error. Only values that are equal to the digit are compared, so that no step need be known;
- * noise without steps has none due. A candidate that lies closer to the values beside it than any
- * two others do is none of the converter's.
+ * too large, and by how much values farther off differ from it is its error. Only values that are
+ * equal to the digit are compared, so that no step need be known; noise without steps has none due.
+ * A candidate that lies closer to the values beside it than any two others do is none of the
+ * converter's.
  *
  * A bit of the converter that is stuck leaves gaps among the values: much wider than the smallest
  * distance between two, and with as many samples at their edges as elsewhere. One of w standard
@@ -81,12 +82,14 @@ static double least_step(const imk_screener *s, size_t values, size_t without)
     return least;
 }
 
-/* Is a value closer to those beside it than they can be? */
+/* Is a value closer to those beside it than they can be, and do they lie on steps without it? */
 static bool is_alone(const imk_screener *s, size_t values, size_t at)
 {
+    const double least = least_step(s, values, at);
     const double below = value_of(s, at) - value_of(s, at - 1);
     const double above = value_of(s, at + 1) - value_of(s, at);
-    return fmin(below, above) < off_grid * least_step(s, values, at);
+    const double steps = (below + above) / least;
+    return fmin(below, above) < off_grid * least && fabs(steps - nearbyint(steps)) < 0.05;
 }
 
 /* What is due of value `at`, SIDE values or more from either end, where value `other` has `number`
@@ -133,7 +136,7 @@ static void find_candidate(imk_screener *s, size_t values)
             continue;
         const bool alone = is_alone(s, values, at);
         const double excess = number_of(s, at) - (alone ? 0 : due_at(s, at, values, 0, &unused));
-        if (!(excess > most))
+        if (alone < f->alone || (alone == f->alone && !(excess > most)))
             continue;
         most = excess;
         best = at;

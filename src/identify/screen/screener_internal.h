@@ -15,6 +15,7 @@ enum {
     IMKI_SCREEN_LEVELS = 2048,
     IMKI_SCREEN_SHARES = 64,
     IMKI_SCREEN_BATCHES = 3,
+    IMKI_SCREEN_EARLY = 24, /* chunks that count in full for an excess */
     IMKI_SCREEN_ENDS = 8,
     IMKI_CYCLE_SEGMENT = 1024,
     /* What a sample is marked with. */
@@ -170,8 +171,8 @@ bool imki_edge_is_abrupt(const imki_edges *edges, double deviation, double step)
 /* screener_excess.c */
 /* Are the samples of the chunk counted for what follows? */
 bool imki_screen_counts(size_t chunk);
-/* Share of the samples by which more are counted than due; 0: no more than chance has, than `least`,
- * or than `factor` times what is due. */
+/* Share of the samples by which more are counted than due; 0: no more than chance has, than
+ * `least`, or than `factor` times what is due. */
 double imki_excess_share(const imki_excess *excess, double least, double factor);
 
 /* screener_frequent.c */

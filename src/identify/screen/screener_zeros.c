@@ -96,7 +96,7 @@ static double count_between(const imk_screener *s, double low, double high)
 {
     size_t count = 0;
     for (size_t i = 0; i < s->count[0]; i++)
-        count += s->clean[i] != 0 && s->clean[i] > low && s->clean[i] < high;
+        count += (s->clean[i] != 0) & (s->clean[i] > low) & (s->clean[i] < high);
     return (double)count;
 }
 

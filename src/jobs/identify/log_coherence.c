@@ -2,12 +2,13 @@
 /* Do axes of one sensor share their noise? Each has noise of its own, so they share it where one is
  * computed from others, where they talk across, or where one is another one some rows late.
  *
- * The coherence |S_ab|/sqrt(S_aa S_bb) of their steps from row to row [BENDAT2010, sec. 5.2.2] does
+ * The coherence |S_ab|/sqrt(S_aa S_bb) of their steps from row to row [BENDAT2010] does
  * not depend on a delay, and a tone that all axes feel is in few bands: its median over the bands
  * is that of the broad-band noise. Each segment counts as much as another, and without the steps
  * far beyond the others, so that rows with faults on all axes count nothing. */
 #include "log_coherence_internal.h"
 
+#include "imukit/elementary.h"
 #include "imukit/fourier.h"
 #include "jobs/job_internal.h"
 
@@ -22,14 +23,14 @@ enum {
     STRETCH = 2048, /* rows of which some segments are taken: */
     EARLY = 1 << 16,
     EARLY_SEGMENTS = 8,
-    LATE_STRETCHES = 8, /* later, one of so many stretches */
-    SEGMENTS_MIN = 32
+    LATE_STRETCHES = 32, /* later, one of so many stretches */
+    SEGMENTS_MIN = 20
 };
 
 /* Coherence of two axes that is a doubt; that is told. By chance it is one over the root of the
  * number of segments. */
 static const double doubted = 0.5, told = 0.3;
-static const double far_of_median = 6; /* steps beyond are faults: four standard deviations */
+static const double far_of_mean = 5; /* steps beyond are faults: four standard deviations */
 
 void imki_coherence_start(imki_coherence *coherence, size_t count, const int *channel,
                           const imk_log_column *columns)
@@ -38,8 +39,7 @@ void imki_coherence_start(imki_coherence *coherence, size_t count, const int *ch
     for (size_t c = 0; c < count; c++) {
         const bool accel = columns[channel[c]].quantity == IMK_QUANTITY_SPECIFIC_FORCE;
         imki_coherent_axes *sensor = &coherence->sensor[accel];
-        if (columns[channel[c]].quantity != IMK_QUANTITY_OTHER &&
-            sensor->axes < IMKI_COHERENT_AXES)
+        if (columns[channel[c]].quantity != IMK_QUANTITY_OTHER && sensor->axes < IMKI_COHERENT_AXES)
             sensor->column[sensor->axes++] = channel[c];
     }
 }
@@ -50,29 +50,41 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+/* Steps far beyond the mean size of the others become 0. @return sum of squares, 0 if some are
+ * missing */
+static double steps_of(const double *x, double *step)
+{
+    double most = HUGE_VAL, square = 0;
+    for (size_t i = 0; i < SEGMENT; i++)
+        step[i] = x[i + 1] - x[i];
+    for (int round = 0; round < 3; round++) {
+        double size = 0, there = 0;
+        square = 0;
+        for (size_t i = 0; i < SEGMENT; i++) {
+            step[i] = fabs(step[i]) > most ? 0 : step[i];
+            size += fabs(step[i]);
+            square += step[i] * step[i];
+            there += step[i] != 0;
+        }
+        if (!(square > 0 && square < HUGE_VAL))
+            return 0;
+        most = far_of_mean * size / there;
+    }
+    return square;
+}
+
 /* Spectrum of the steps of a segment, of unit variance; false: some are missing, or none differs.
  */
 static bool spectrum_of(const double *x, double *spectrum)
 {
     static const double two_pi = 6.283185307179586;
     char room[1 << 13];
-    double step[SEGMENT], size[SEGMENT], square = 0;
-    for (size_t i = 0; i < SEGMENT; i++) {
-        step[i] = x[i + 1] - x[i];
-        size[i] = fabs(step[i]);
-        if (!(size[i] < HUGE_VAL))
-            return false;
-    }
-    qsort(size, SEGMENT, sizeof *size, ascending);
-    const double most = size[SEGMENT / 2] > 0 ? far_of_median * size[SEGMENT / 2] : HUGE_VAL;
-    for (size_t i = 0; i < SEGMENT; i++) {
-        step[i] = fabs(step[i]) > most ? 0 : step[i];
-        square += step[i] * step[i];
-    }
+    double step[SEGMENT];
+    const double square = steps_of(x, step);
     if (!(square > 0))
         return false;
     for (size_t i = 0; i < SEGMENT; i++) {
-        const double window = 1 - cos(two_pi * (double)i / SEGMENT);
+        const double window = 1 - imk_cos(two_pi * (double)i / SEGMENT);
         spectrum[2 * i] = step[i] * window / sqrt(square);
         spectrum[2 * i + 1] = 0;
     }
