@@ -62,9 +62,9 @@ typedef struct imk_screen {
                               noise, as loggers write them for lost rows; taken out with the stuck
                               samples, but none of them */
     double lost_value;     /**< this value, the last one found */
-    double zeros; /**< share of the samples by which zeros among the noise are more than their
-                     neighbours tell: small values were put to zero, or all were cut off toward it;
-                     0: they are not */
+    double zeros;  /**< share of the samples by which zeros among the noise are more than their
+                      neighbours tell: small values were put to zero, or all were cut off toward it;
+                      0: they are not */
     double filled; /**< share of the samples by which one value is more frequent than those beside
                       it tell, as where a mean is written for missing samples; 0: none is */
     double filled_value; /**< this value */

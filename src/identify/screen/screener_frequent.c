@@ -26,6 +26,7 @@ enum { SIDE = IMKI_FREQUENT_SIDE, CROWD_MIN = 20 };
 
 static const double candidate_share = 0.01; /* too many, of a chunk */
 static const double least_share = 0.03, least_factor = 1.2, uneven_deviations = 3;
+static const double due_deviations = 6, most_of_beside = 3;
 static const double off_grid = 0.9;
 static const double gap_of_scale = 0.35, gap_of_step = 2.9, crowd_share = 0.01, edge_of_scale = 0.5;
 
@@ -202,11 +203,14 @@ double imki_frequent_excess(const imki_frequent *f)
     if (!f->candidate)
         return 0;
     imki_excess e = {.samples = f->samples, .counted = f->number[SIDE]};
-    double variance;
-    if (!f->alone) {
-        e.due = due_of(f->number, &variance);
-        e.variance = e.due * (1 + e.due * variance);
-    }
-    const double factor = fmax(least_factor, imk_exp(uneven_deviations * sqrt(f->uneven)));
-    return imki_excess_share(&e, least_share, factor);
+    if (f->alone)
+        return imki_excess_share(&e, least_share, least_factor);
+    double variance, most = 0;
+    e.due = due_of(f->number, &variance);
+    for (int k = 0; k <= 2 * SIDE; k++)
+        most = k == SIDE ? most : fmax(most, f->number[k]);
+    /* beside few samples what is due is hardly known, but for its size */
+    const double error = due_deviations * sqrt(variance) + uneven_deviations * sqrt(f->uneven);
+    e.variance = fmin(e.due * imk_exp(error), most_of_beside * (most + most_of_beside));
+    return imki_excess_share(&e, least_share, fmax(least_factor, e.variance / e.due));
 }
