@@ -336,6 +336,78 @@ def handled(record, rng, strength):
         column.values[:len(t)] += strength * sigma_of(record, column) * swing * (1 - t / 5)
 
 
+# ---- values, repeats and axes ----------------------------------------------------------------
+
+
+def filled(step):
+    def apply(record, rng, strength):
+        """This share of the samples is replaced by the mean of the record."""
+        for column in record.columns:
+            if step:
+                q = step * sigma_of(record, column)
+                column.values = np.round(column.values / q) * q
+            mean = np.mean(column.values)
+            inside = rng.random(record.rows) < strength
+            column.values[inside] = np.round(mean / q) * q if step else mean
+    return apply
+
+
+def stuck_bit(record, rng, strength):
+    """A bit of the converter that weighs `strength` sigma is always 0; steps of an eighth of it."""
+    for column in record.columns:
+        bit = strength * sigma_of(record, column)
+        code = np.round(column.values / bit * 8).astype(int)
+        column.values = (code & ~8) * bit / 8
+
+
+def axis_repeats(step):
+    def apply(record, rng, strength):
+        """The last axis alone repeats its last sample in this share of the rows."""
+        column = record.columns[-1]
+        if step:
+            q = step * sigma_of(record, column)
+            column.values = np.round(column.values / q) * q
+        inside = rng.random(record.rows) < strength
+        inside[0] = False
+        column.values = column.values[np.maximum.accumulate(
+            np.where(inside, 0, np.arange(record.rows)))]
+    return apply
+
+
+def rows_interpolated(step):
+    def apply(record, rng, strength):
+        """This share of the rows, each alone, is the mean of the rows beside it."""
+        inside = np.flatnonzero(rng.random(record.rows) < strength)
+        inside = inside[(inside > 0) & (inside < record.rows - 1)]
+        inside = inside[np.diff(inside, prepend=-2) > 1]
+        for column in record.columns:
+            x = column.values
+            x[inside] = (x[inside - 1] + x[inside + 1]) / 2
+            if step:
+                q = step * sigma_of(record, column)
+                column.values = np.round(x / q) * q
+    return apply
+
+
+def crosstalk(record, rng, strength):
+    """`strength` times the noise of the first axis is on the second."""
+    first, second = record.columns[:2]
+    second.values += strength * (first.values - first.values.mean())
+
+
+def axis_of_two(record, rng, strength):
+    """The last axis is the mean of the others, with `strength` of its own noise."""
+    first, second, last = record.columns[:3]
+    last.values = (first.values + second.values) / 2 + strength * (
+        last.values - last.values.mean())
+
+
+def axis_late(record, rng, strength):
+    """The last axis is the first one, some rows later, with a tenth of its own noise."""
+    first, last = record.columns[0], record.columns[-1]
+    last.values = np.roll(first.values, int(strength)) + 0.1 * (last.values - last.values.mean())
+
+
 # ---- units -----------------------------------------------------------------------------------
 
 
@@ -435,6 +507,26 @@ FAULTS = [
           "small values are put to zero"),
     Fault("cut_off", "4", "nb_30min", (0.1, 0.3, 0.8), "sigma", cut_off,
           "values are cut off toward zero", factor=lambda s: np.sqrt(1 + s * s / 12)),
+    Fault("filled", "4", "nb_30min", (0.05, 0.1, 0.3), "share", filled(0),
+          "samples are replaced by the mean"),
+    Fault("filled_steps", "4", "nb_30min", (0.05, 0.1, 0.3), "share", filled(0.7),
+          "the same, on steps of 0.7 sigma"),
+    Fault("stuck_bit", "4", "nb_30min", (0.5, 1, 2), "sigma", stuck_bit,
+          "a bit of the converter is always 0"),
+    Fault("axis_repeats", "3", "nb_30min", (0.03, 0.1, 0.3), "share", axis_repeats(0),
+          "one axis repeats its last sample"),
+    Fault("axis_repeats_steps", "3", "nb_30min", (0.05, 0.1, 0.3), "share", axis_repeats(0.7),
+          "the same, on steps of 0.7 sigma"),
+    Fault("rows_interpolated", "3", "nb_30min", (0.05, 0.1, 0.2), "share", rows_interpolated(0),
+          "single rows are the means of those beside them"),
+    Fault("rows_interpolated_steps", "3", "nb_30min", (0.05, 0.1, 0.2), "share",
+          rows_interpolated(0.7), "the same, on steps of 0.7 sigma"),
+    Fault("crosstalk", "10", "nb_30min", (0.7, 1, 2), "x", crosstalk,
+          "the noise of an axis is on another"),
+    Fault("axis_of_two", "10", "nb_30min", (0.5, 0.1, 0.01), "x", axis_of_two,
+          "an axis is the mean of the two others"),
+    Fault("axis_late", "10", "nb_30min", (1, 3, 8), "rows", axis_late,
+          "an axis is another one, some rows later"),
     Fault("lost_rows", "3", "six_g", (0.001, 0.01, 0.05), "share", lost_rows,
           "lost rows are written as zeros"),
     Fault("handled", "8", "six_g", (30, 300, 3000), "sigma", handled,

@@ -62,9 +62,17 @@ typedef struct imk_screen {
                               noise, as loggers write them for lost rows; taken out with the stuck
                               samples, but none of them */
     double lost_value;     /**< this value, the last one found */
-    double zeros; /**< share of the samples by which zeros among the noise are more than their
-                     neighbours tell: small values were put to zero, or all were cut off toward it;
-                     0: they are not */
+    double zeros;  /**< share of the samples by which zeros among the noise are more than their
+                      neighbours tell: small values were put to zero, or all were cut off toward it;
+                      0: they are not */
+    double filled; /**< share of the samples by which one value is more frequent than those beside
+                      it tell, as where a mean is written for missing samples; 0: none is */
+    double filled_value; /**< this value */
+    double held;         /**< share of samples that repeat the one before beyond those that noise
+                            repeats by chance; 0: none */
+    double straight;     /**< the same of samples that are the mean of their neighbours */
+    double gap; /**< widest gap among the values, as a stuck bit of the converter leaves it; 0: none
+                   of more than a third of the noise */
     imk_screen_count stuck; /**< samples in runs of one value that are longer than the noise allows,
                                without the first sample of each run */
     size_t longest_stuck;   /**< samples in the longest run */

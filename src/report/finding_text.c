@@ -108,6 +108,10 @@ static const struct message {
              "right columns with --columns"},
     {"follows", "the changes of {name} are those of {other}, times {0.4g}: two sensors have noise "
                 "of their own, so one of the two is computed from the other; leave it out"},
+    {"correlated",
+     "{name} and {other} share their noise, with a coherence of {0.2g} at most frequencies: axes "
+     "have noise of their own, unless one is computed from others, they talk across, or all feel "
+     "what the sensor stands on; the white noise is then not that of the axis"},
     {"stamps:rate_differs", "--rate says {0.7g} Hz, but the time column {1.7g} Hz; --rate is used, "
                             "and every result follows from it: check which one is right"},
     /* record_spacing.c */

@@ -148,6 +148,14 @@ static void follow_axis(test_log *l, double axis)
         l->gyro[(int)axis][i] = 0.1 - 1.3 * l->gyro[0][i] + 0.01 * l->gyro[1][i];
 }
 
+/* As much of the axis before, three rows late, as of its own noise. */
+static void mix_axis(test_log *l, double axis)
+{
+    double *gyro = l->gyro[(int)axis];
+    for (size_t i = 3; i < l->rows; i++)
+        gyro[i] += 1.2 * l->gyro[(int)axis - 1][i - 3];
+}
+
 static void offset(test_log *l, double seconds)
 {
     for (size_t i = 0; i < l->rows; i++)
@@ -571,8 +579,8 @@ static void test_noise(void **context)
     check_noise((fault[]){{step_back, 5}, {NULL, 0}}, 5);
 }
 
-/* The verdict of held samples, of late rows and of a column given twice is no all-clear, and begins
- * with a short sentence. */
+/* The verdict of held samples, of late rows, of a column given twice and of axes with one noise is
+ * no all-clear, and begins with a short sentence. */
 static void test_verdict(void **context)
 {
     (void)context;
@@ -580,14 +588,16 @@ static void test_verdict(void **context)
     static const fault faults[][2] = {{{hold, 1.5}, {NULL, 0}},
                                       {{burst, 100}, {NULL, 0}},
                                       {{copy_axis, 2}, {NULL, 0}},
-                                      {{follow_axis, 2}, {NULL, 0}}};
-    static const char *const codes[] = {"held", "late", "copy", "follows"};
+                                      {{follow_axis, 2}, {NULL, 0}},
+                                      {{mix_axis, 2}, {NULL, 0}}};
+    static const char *const codes[] = {"held", "late", "copy", "follows", "correlated"};
     static const char *const sentences[] = {
         "Usable with care: rows repeat the samples of a slower sensor",
         "Usable with care: rows are stamped late",
         "Usable with care: a column is the copy of another",
-        "Usable with care: a column is computed from another"};
-    for (int k = 0; k < 4; k++) {
+        "Usable with care: a column is computed from another",
+        "Usable with care: axes share their noise"};
+    for (int k = 0; k < 5; k++) {
         imk_array_source memory;
         imk_identify_log *found;
         imk_error error;

@@ -253,6 +253,10 @@ void imki_screen_conclude(imk_screener *s)
     f->stuck.first = f->stuck.count > 0 ? f->stuck.first : f->n;
     f->lost.first = f->lost.count > 0 ? f->lost.first : f->n;
     f->zeros = imki_zeros_excess(&s->zeros);
+    f->filled = imki_frequent_excess(&s->frequent);
+    f->filled_value = s->frequent.value[IMKI_FREQUENT_SIDE];
+    f->held = imki_repeated_excess(s);
+    f->straight = imki_straight_excess(s);
     find_saturation(s);
     f->ends_low = imki_edge_is_abrupt(&s->lower, f->noise, f->resolution);
     f->ends_high = imki_edge_is_abrupt(&s->upper, f->noise, f->resolution);

@@ -40,7 +40,7 @@ static void lay_out(imk_screener *s, imki_parts *parts)
     s->clean = imki_take(parts, row);
     s->value = imki_take(parts, row + MARGIN * sizeof(double));
     s->room_count = (parts->used - begin) / sizeof(double);
-    s->place = imki_take(parts, CHUNK * sizeof *s->place);
+    s->place = imki_take(parts, (CHUNK + 1) * sizeof *s->place);
     s->mark = imki_take(parts, CHUNK);
 }
 
@@ -201,6 +201,8 @@ static void decide(imk_screener *s)
     if (s->chunk % CORE_EVERY == 0)
         imki_screen_core(s);
     imki_screen_zeros(s);
+    imki_screen_frequent(s);
+    imki_screen_serial(s);
     add_ends(s);
     if (s->chunk % EDGES_EVERY == 0)
         imki_edges_add(&s->upper, &s->lower, s->count[0], s->clean);

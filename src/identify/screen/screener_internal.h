@@ -15,6 +15,7 @@ enum {
     IMKI_SCREEN_LEVELS = 2048,
     IMKI_SCREEN_SHARES = 64,
     IMKI_SCREEN_BATCHES = 3,
+    IMKI_SCREEN_EARLY = 24, /* chunks that count in full for an excess */
     IMKI_SCREEN_ENDS = 8,
     IMKI_CYCLE_SEGMENT = 1024,
     /* What a sample is marked with. */
@@ -64,6 +65,22 @@ typedef struct imki_cycles {
     double segments;
     double differences, straight, straight_by_chance; /* second differences, those that vanish */
 } imki_cycles;
+
+/* Samples that are equal to something, how many are due, and the variance of their difference. */
+typedef struct imki_excess {
+    double samples, counted, due, variance;
+} imki_excess;
+
+/* A value that may be too frequent, three values on either side, in order, and how often they came.
+ */
+enum { IMKI_FREQUENT_SIDE = 3 };
+typedef struct imki_frequent {
+    bool looked, candidate;
+    bool alone; /* beside the steps of the others */
+    double samples;
+    double uneven; /* mean square error of the logarithm of what is due */
+    double value[2 * IMKI_FREQUENT_SIDE + 1], number[2 * IMKI_FREQUENT_SIDE + 1];
+} imki_frequent;
 
 /* Zeros among the noise of some chunks, and values beside them, in chunks of fine steps and of
  * coarse ones. */
@@ -119,6 +136,8 @@ struct imk_screener {
     imki_levels levels;
     imki_cycles cycles;
     imki_zeros zeros;
+    imki_frequent frequent;
+    imki_excess repeated, straight; /* equal to the sample before; means of their neighbours */
     imk_screen found;
 };
 
@@ -148,6 +167,24 @@ void imki_edges_add(imki_edges *high, imki_edges *low, size_t count, const doubl
 /* Are there more samples near the largest than noise has?
  * @param deviation  of the fast noise @param step  between values; 0: none */
 bool imki_edge_is_abrupt(const imki_edges *edges, double deviation, double step);
+
+/* screener_excess.c */
+/* Are the samples of the chunk counted for what follows? */
+bool imki_screen_counts(size_t chunk);
+/* Share of the samples by which more are counted than due; 0: no more than chance has, than
+ * `least`, or than `factor` times what is due. */
+double imki_excess_share(const imki_excess *excess, double least, double factor);
+
+/* screener_frequent.c */
+/* Find a value that is too frequent, and gaps among the values; count it in the chunk. */
+void imki_screen_frequent(imk_screener *s);
+double imki_frequent_excess(const imki_frequent *frequent);
+
+/* screener_serial.c */
+/* Count samples equal to the one before, and those that are the mean of their neighbours. */
+void imki_screen_serial(imk_screener *s);
+double imki_repeated_excess(const imk_screener *s);
+double imki_straight_excess(const imk_screener *s);
 
 /* screener_zeros.c */
 /* Mark zeros that lie outside the other samples of raw[0]. */

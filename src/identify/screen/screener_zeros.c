@@ -22,13 +22,11 @@
 
 #include <math.h>
 
-enum { EVERY = 8, STEPS = 3, FAR = 30, REPEATS = 3, FINE = 3, COUNTED_MIN = 25 };
+enum { STEPS = 3, FAR = 30, REPEATS = 3, FINE = 3, ONE_MIN = 25, TWO_MIN = 4 };
 
 /* Of the range of the other samples: so far are they from zero, and from another value. */
 static const double apart = 0.25, far_apart = 2;
-/* Zeros among the noise are too many when they are more than due by these. */
-static const double coarsest = 1.4;
-static const double least_share = 0.015, least_factor = 1.2, deviations = 6;
+static const double coarsest = 1.4, least_share = 0.015, least_factor = 1.2;
 
 static size_t count_zeros(size_t count, const double *x)
 {
@@ -98,7 +96,7 @@ static double count_between(const imk_screener *s, double low, double high)
 {
     size_t count = 0;
     for (size_t i = 0; i < s->count[0]; i++)
-        count += s->clean[i] != 0 && s->clean[i] > low && s->clean[i] < high;
+        count += (s->clean[i] != 0) & (s->clean[i] > low) & (s->clean[i] < high);
     return (double)count;
 }
 
@@ -121,7 +119,7 @@ static size_t most_frequent(imk_screener *s)
 void imki_screen_zeros(imk_screener *s)
 {
     imki_zeros *z = &s->zeros;
-    if (s->chunk % EVERY != 0)
+    if (!imki_screen_counts(s->chunk))
         return;
     z->samples += (double)s->count[0];
     const double zeros = (double)count_zeros(s->count[0], s->clean), step = s->step;
@@ -150,22 +148,16 @@ void imki_screen_zeros(imk_screener *s)
 
 double imki_zeros_excess(const imki_zeros *z)
 {
-    const double least = fmin(fmin(z->above[0], z->above[1]), fmin(z->below[0], z->below[1]));
-    double due = z->due, variance = z->variance, zeros = z->fine;
-    if (least >= COUNTED_MIN) {
-        const double one = imk_ln(z->above[0]) + imk_ln(z->below[0]);
-        const double two = imk_ln(z->above[1]) + imk_ln(z->below[1]);
+    const double *above = z->above, *below = z->below;
+    imki_excess e = {z->samples, z->fine, z->due, z->variance};
+    if (fmin(above[0], below[0]) >= ONE_MIN && fmin(above[1], below[1]) >= TWO_MIN) {
+        const double one = imk_ln(above[0]) + imk_ln(below[0]);
+        const double two = imk_ln(above[1]) + imk_ln(below[1]);
         const double here = imk_exp((4 * one - two) / 6);
-        due += here;
-        variance +=
-            here + here * here *
-                       (16 / z->above[0] + 16 / z->below[0] + 1 / z->above[1] + 1 / z->below[1]) /
-                       36;
-        zeros += z->coarse;
+        const double spread = 16 / above[0] + 16 / below[0] + 1 / above[1] + 1 / below[1];
+        e.counted += z->coarse;
+        e.due += here;
+        e.variance += here + here * here * spread / 36;
     }
-    const double excess = zeros - due;
-    return excess > least_share * z->samples && zeros > least_factor * due &&
-                   excess > deviations * sqrt(variance)
-               ? excess / z->samples
-               : 0;
+    return imki_excess_share(&e, least_share, least_factor);
 }

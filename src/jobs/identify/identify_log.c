@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Identifies a record: whole, or in one pass when it is long. */
 #include "identify_log_internal.h"
+#include "log_coherence_internal.h"
 
 #include "jobs/allan/allan_curve_internal.h"
 #include "jobs/arena_internal.h"
@@ -176,6 +177,15 @@ static void allow_for(imk_findings *findings)
                 findings->item[k].level = IMK_FINDING_NOTE;
 }
 
+static void tell_coherence(imk_identify_log *log)
+{
+    const imk_even_record *record = &log->record;
+    imki_coherence coherence;
+    imki_coherence_start(&coherence, record->count, record->column, record->log.column);
+    imki_coherence_add(&coherence, record->rows, record->log.data);
+    imki_coherence_tell(&coherence, record->log.column, &log->findings);
+}
+
 static imk_status identify(imk_identify_log *log, const imk_record_source *source,
                            const imk_job *job, imk_error *error)
 {
@@ -186,6 +196,8 @@ static imk_status identify(imk_identify_log *log, const imk_record_source *sourc
     if (status == IMK_OK && !taken)
         status = imk_even_record_load(source, log->settings.gaps, job, &log->record, &log->findings,
                                       error);
+    if (status == IMK_OK && !taken)
+        tell_coherence(log);
     if (status == IMK_OK && !taken)
         status = imki_identify_channels(log, job, error);
     if (status == IMK_OK && log->settings.from_allan)

@@ -3,6 +3,7 @@
  * the block before are gathered, each on a thread. Rows are placed by record_grid.c, one at a time;
  * under another policy than IMK_GAPS_KEEP, a record with anything missing is loaded. */
 #include "identify_log_internal.h"
+#include "log_coherence_internal.h"
 #include "long_passage_internal.h"
 
 #include "jobs/allan/allan_curve_internal.h"
@@ -50,6 +51,7 @@ typedef struct long_record {
     imki_stamps stamps;      /* their times, when settled */
     imk_log_findings settled;
     imki_repeats repeats;
+    imki_coherence coherence;
     size_t piece_count;
     piece *pieces;                   /* ROWS of them, for a record that is long */
     bool dirty[IMK_LOG_COLUMNS_MAX]; /* the block has missing values of this channel */
@@ -77,13 +79,22 @@ static bool make_block(long_record *s, row_block *block)
     return true;
 }
 
+static void start_counts(long_record *s)
+{
+    const imk_even_record *record = &s->log->record;
+    imki_repeats_start(&s->repeats, record->count, record->column, record->log.column);
+    imki_coherence_start(&s->coherence, record->count, record->column, record->log.column);
+}
+
 static void read_block(long_record *s, row_block *block)
 {
     block->rows = 0;
     block->status = s->source->read(s->source->context, ROWS, (double *const *)block->column,
                                     &block->rows, &block->error);
-    if (block->status == IMK_OK)
-        imki_repeats_add(&s->repeats, block->rows, block->column);
+    if (block->status != IMK_OK)
+        return;
+    imki_repeats_add(&s->repeats, block->rows, block->column);
+    imki_coherence_add(&s->coherence, block->rows, block->column);
 }
 
 /* How many rows there will be, by the size of the source and of the rows of the first block. */
@@ -316,6 +327,7 @@ static imk_status finish(long_record *s, bool *taken, imk_error *error)
     imki_grid_tell(record, s->first_not_finite, &log->findings);
     if (record->log.findings.doubled == 0)
         imki_repeats_tell(&s->repeats, record->log.column, record->dt, &log->findings);
+    imki_coherence_tell(&s->coherence, record->log.column, &log->findings);
     imki_even_record_unused(record, &log->findings);
     for (size_t c = 0; c < record->count; c++)
         if (s->status[c] != IMK_OK)
@@ -345,7 +357,7 @@ static bool begin(long_record *s, bool *touched)
         return false;
     }
     *touched = true;
-    imki_repeats_start(&s->repeats, record->count, record->column, record->log.column);
+    start_counts(s);
     read_block(s, &s->block[0]);
     if (s->block[0].rows < ROWS)
         read_block(s, &s->block[1]); /* says why it ended there */
@@ -362,8 +374,7 @@ static imk_status settle(long_record *s, imk_error *error)
     if (status == IMK_OK)
         status =
             imki_stamps_settle(&s->stamps, s->source->rate, &s->settled, &s->log->findings, error);
-    imki_repeats_start(&s->repeats, s->log->record.count, s->log->record.column,
-                       s->log->record.log.column);
+    start_counts(s);
     if (status == IMK_OK)
         read_block(s, &s->block[0]);
     return status;

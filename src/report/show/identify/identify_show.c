@@ -119,6 +119,10 @@ static void screening_data(const imk_identify_log *log, size_t channel, imk_unit
     warm_up_data(s, unit, result);
     temperature_data(s, unit, result);
     imk_result_number(result, "zeros", s->zeros);
+    imk_result_number(result, "filled", s->filled);
+    imk_result_number(result, "repeated", s->held);
+    imk_result_number(result, "straight", s->straight);
+    imk_result_quantity(result, "gap", s->gap / unit.scale, unit.text);
     imk_result_end(result);
 }
 

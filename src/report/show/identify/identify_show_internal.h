@@ -27,6 +27,8 @@ void imki_verdict_lines(const imk_verdict *verdict, bool verbose, imk_result *re
 /* verdict_samples.c, verdict_terms.c: what holds on some channels. */
 void imki_assess_samples(imk_verdict *verdict, const imk_identify_log *log);
 void imki_assess_terms(imk_verdict *verdict, const imk_identify_log *log);
+/* verdict_values.c: values that are too frequent, or never come. */
+void imki_assess_values(imk_verdict *verdict, const imk_identify_log *log);
 /* verdict_vibration.c: tones that several channels share. */
 void imki_assess_vibration(imk_verdict *verdict, const imk_identify_log *log);
 /* verdict_axes.c: an axis unlike the others of its triad; gyros with impossible numbers. */

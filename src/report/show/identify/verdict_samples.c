@@ -66,13 +66,6 @@ static bool find_lost(const imk_identify_log *log, size_t channel, imki_text *de
     return s->lost.count > 0;
 }
 
-static bool find_zeros(const imk_identify_log *log, size_t channel, imki_text *detail)
-{
-    const imk_screen *s = &log->screen[channel];
-    imki_text_add(detail, "%.3g %% of the samples", 100 * s->zeros);
-    return s->zeros > 0;
-}
-
 static bool find_saturated(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_screen *s = &log->screen[channel];
@@ -246,11 +239,6 @@ static const imki_concern concerns[] = {
     {0, find_lost, IMK_SCREEN_STUCK, IMK_FINDING_NOTE, "lost",
      "one value far outside the noise, as a logger writes it for a row that was lost; left out",
      "one value far outside the noise, as a logger writes it for a row that was lost; kept"},
-    {0, find_zeros, 0, IMK_FINDING_WARNING, "zeros",
-     "so many zeros are more than the values beside zero tell: lost rows are written as 0, or the "
-     "driver has a dead band or cuts values off toward zero instead of rounding them; the white "
-     "noise may be too low by up to this share",
-     NULL},
     {0, find_saturated, IMK_SCREEN_SATURATED, IMK_FINDING_NOTE, "at_limit",
      "samples at the end of the range; the values are those of normal noise before it was cut off "
      "there, and their intervals allow for that assumption",

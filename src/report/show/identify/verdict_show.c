@@ -150,6 +150,7 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
     assess_gravity(&v, log);
     imki_assess_axes(&v, log);
     imki_assess_samples(&v, log);
+    imki_assess_values(&v, log);
     imki_assess_terms(&v, log);
     imki_assess_vibration(&v, log);
     imki_verdict_noise_changes(&v, log);
