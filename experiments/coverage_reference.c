@@ -37,25 +37,18 @@ static const struct {
 static const struct {
     const char *name;
     double bad, unequal, push[2], mounting, placement, stated;
-} faults[] = {
-    {"0 % bad", .unequal = 1.0},
-    {"10 % bad", .bad = 0.1, .unequal = 1.0},
-    {"axes 1 : 4 : 16", .unequal = 4.0},
-    {"equal errors of holds", .unequal = 1.0, .push = {1e-4, 2e-3}},
-    {"axes 1 : 4 : 16, equal errors of holds", .unequal = 4.0, .push = {1e-4, 2e-3}},
-    {"mounting 0.3 deg, 0.1 stated, which no log tests",
-     .unequal = 1.0,
-     .mounting = 0.3 * DEGREE,
-     .stated = 1.0 / 3.0},
-    {"placement 0.1 deg", .unequal = 1.0, .placement = 0.1 * DEGREE, .stated = 1.0},
-    {"placement 0.3 deg, 0.1 stated",
-     .unequal = 1.0,
-     .placement = 0.3 * DEGREE,
-     .stated = 1.0 / 3.0},
-    {"axes 1 : 4 : 16, placement 0.3 deg, 0.1 stated",
-     .unequal = 4.0,
-     .placement = 0.3 * DEGREE,
-     .stated = 1.0 / 3.0}};
+} faults[] = {{"0 % bad", .unequal = 1.0},
+              {"10 % bad", .bad = 0.1, .unequal = 1.0},
+              {"axes 1 : 4 : 16", .unequal = 4.0},
+              {"equal errors of holds", .unequal = 1.0, .push = {1e-4, 2e-3}},
+              {"axes 1 : 4 : 16, equal errors of holds", .unequal = 4.0, .push = {1e-4, 2e-3}},
+              {"mounting 0.3 deg, 0.1 stated, which no log tests", .unequal = 1.0,
+               .mounting = 0.3 * DEGREE, .stated = 1.0 / 3.0},
+              {"placement 0.1 deg", .unequal = 1.0, .placement = 0.1 * DEGREE, .stated = 1.0},
+              {"placement 0.3 deg, 0.1 stated", .unequal = 1.0, .placement = 0.3 * DEGREE,
+               .stated = 1.0 / 3.0},
+              {"axes 1 : 4 : 16, placement 0.3 deg, 0.1 stated", .unequal = 4.0,
+               .placement = 0.3 * DEGREE, .stated = 1.0 / 3.0}};
 
 /* Only a tumble is told how well it is placed in each hold; where the g-sensitivity is not
  * estimated, errors of holds are what may be taken for it. */

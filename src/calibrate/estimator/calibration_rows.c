@@ -210,7 +210,7 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
                 continue;
             const imki_axis_reading y = imki_axis_read(&problem->model, sensor, axis, &x.input);
             imki_row *row = &rows[count++];
-            row->group = moving                ? imki_moving_group(sensor)
+            row->group = moving               ? imki_moving_group(sensor)
                          : sensor == IMK_GYRO ? IMK_GROUP_GYRO
                                               : IMK_GROUP_ACCEL;
             row->part = moving ? imki_moving_part(sensor, axis) : imki_part_of(e, sensor, axis);

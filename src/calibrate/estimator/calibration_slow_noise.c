@@ -59,7 +59,7 @@ typedef struct sums {
     double total[IMKI_GLOBALS_MAX];         /* of influence */
     double diagonal[2]; /* sum of C_ii over the variance of the row, what locals took left out; of
                            holds, and where the input moves */
-    double last;     /* end of the stretch before */
+    double last;        /* end of the stretch before */
 } sums;
 
 /* An axis over one record: places in e->slow.order. */

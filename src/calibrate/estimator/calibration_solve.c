@@ -137,9 +137,9 @@ static imk_status solve(imki_estimator *e, imki_fit *fit, double *weakest, imk_e
 /* Of the result, which has one for all readings of a sensor. */
 static int public_group(const imki_row *row)
 {
-    return row->sensor < 0            ? IMK_GROUP_TURN
+    return row->sensor < 0           ? IMK_GROUP_TURN
            : row->sensor == IMK_GYRO ? IMK_GROUP_GYRO
-                                      : IMK_GROUP_ACCEL;
+                                     : IMK_GROUP_ACCEL;
 }
 
 static void fill_outputs(imki_estimator *e, imk_calibration_result *result)

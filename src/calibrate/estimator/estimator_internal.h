@@ -254,7 +254,8 @@ int imki_term_row(const imki_estimator *e, const imki_point *point, size_t p, im
 /* Variance of a row by what was stated of it. */
 static inline double imki_stated_variance(const imki_estimator *e, const imki_row *row)
 {
-    const bool added = row->sensor >= 0 && row->group < IMKI_GROUP_MOVING && e->added[row->sensor] > 0.0;
+    const bool added =
+        row->sensor >= 0 && row->group < IMKI_GROUP_MOVING && e->added[row->sensor] > 0.0;
     return row->known_variance + (added ? 0.0 : row->sigma * row->sigma);
 }
 /* The parts of a group. @return their number */
