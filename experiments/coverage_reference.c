@@ -70,7 +70,7 @@ static void run(size_t which, size_t fault, size_t benches, uint64_t seed)
     if (b->procedure == IMK_PROCEDURE_TUMBLE)
         b->settings.nonlinear = true;
     if (b->procedure == IMK_PROCEDURE_RATE_TABLE)
-        b->settings.sine_block = 0.1;
+        b->settings.sine_block = 0.05;
     b->unequal = faults[fault].unequal;
     memcpy(b->push, faults[fault].push, sizeof b->push);
     b->mounting = faults[fault].mounting;
