@@ -230,7 +230,8 @@ static double look_at_scatter(const imki_procedure_call *call, const imki_turn_l
                     mean += weight * ratio;
                     turns += 1.0;
                 } else {
-                    const double off = ratio - mean / weights;
+                    /* of the angle, also where a gyro reads in another unit */
+                    const double off = mean != 0.0 ? ratio * weights / mean - 1.0 : 0.0;
                     f->chi_square += weight * off * off;
                     square += off * off * turn->angle * turn->angle;
                 }
