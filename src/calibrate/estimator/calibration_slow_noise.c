@@ -427,8 +427,8 @@ void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit)
                 sum_pairs(e, &r, &p, s);
                 /* What the globals take is shared as what there is. */
                 const double all_rows = s->diagonal[0] + s->diagonal[1];
-                const double left =
-                    1.0 - trace_with_information(&e->normal, e->slow.axis) / all_rows;
+                const double taken = trace_with_information(&e->normal, e->slow.axis);
+                const double left = all_rows > 0.0 ? 1.0 - taken / all_rows : 0.0;
                 expected[imki_part_of(e, sensor, axis)] += left * s->diagonal[0];
                 expected[imki_moving_part(sensor, axis)] += left * s->diagonal[1];
                 for (size_t i = 0; i < g * g; i++)
