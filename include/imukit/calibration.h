@@ -84,6 +84,8 @@ typedef struct imk_observation {
     bool relative;    /**< true: the readings are those less the readings at rest, so that the bias
                            and all that does not depend on the rate have no part in them (of counts,
                            plus the zero offset) */
+    bool moving;      /**< true: a short block of samples while the input changes. What befalls a
+                           hold befalls many of them, or none: their scatter is their own */
     /* Filled by imk_calibration_solve(): */
     double residual[2][IMK_AXES_MAX]; /**< reading less fit [rad/s], [m/s^2]; NaN: not observed */
     double vertical[3]; /**< of an unknown attitude: direction of the specific force, body axes */

@@ -28,6 +28,9 @@ typedef struct session {
     double unequal; /* white noise of each axis over that of the axis before it; 0: 1 */
     double
         push[2]; /* 1 sigma of what each hold adds to every gyro [rad/s], accelerometer [m/s^2] */
+    double mounting, placement; /* 1 sigma of the unit on its fixture, and besides in each hold
+                                   [rad]; the calibration is told `stated` of them */
+    double stated;
     bool noise_known; /* the calibration is told the noise */
     imk_test_record record;
     imk_procedure_settings settings;
@@ -321,6 +324,49 @@ static inline void session_push(session *b, uint64_t seed)
                 b->log[c][k] += b->push[c / 3] * normal[6 * h + c];
 }
 
+/* Turn the motion of samples begin ... end - 1, to second order in the angles. */
+static inline void session_tilt(session *b, size_t begin, size_t end, const double angle[3],
+                                double sign)
+{
+    for (size_t k = begin; k < end; k++)
+        for (int which = 0; which < 3; which++) {
+            double(*const motion)[BENCH_SAMPLES] = which == 0   ? b->rate
+                                                   : which == 1 ? b->force
+                                                                : b->acceleration;
+            double v[3], once[3];
+            for (int j = 0; j < 3; j++)
+                v[j] = motion[j][k];
+            for (int j = 0; j < 3; j++)
+                once[j] = sign * (angle[(j + 1) % 3] * v[(j + 2) % 3] -
+                                  angle[(j + 2) % 3] * v[(j + 1) % 3]);
+            for (int j = 0; j < 3; j++)
+                motion[j][k] = v[j] + once[j] +
+                               0.5 * sign *
+                                   (angle[(j + 1) % 3] * once[(j + 2) % 3] -
+                                    angle[(j + 2) % 3] * once[(j + 1) % 3]);
+        }
+}
+
+/* The unit is not placed as the reference says; with the sign -1 it is again. */
+static inline void session_misplace(session *b, uint64_t seed, double sign)
+{
+    double normal[3 * BENCH_HOLDS + 3], angle[3];
+    imk_random_normals(imk_random_seeded(seed), imk_stream(0, 904, 0, 0), 0, 3 * BENCH_HOLDS + 3,
+                       normal);
+    for (int pass = 0; pass < 2; pass++) {
+        const bool mounts = (pass == 0) == (sign > 0.0);
+        for (int j = 0; j < 3; j++)
+            angle[j] = b->mounting * normal[3 * BENCH_HOLDS + j];
+        if (mounts && b->mounting > 0.0)
+            session_tilt(b, 0, b->count, angle, sign);
+        for (size_t h = 0; h < b->holds && !mounts && b->placement > 0.0; h++) {
+            for (size_t j = 0; j < 3; j++)
+                angle[j] = b->placement * normal[3 * h + j];
+            session_tilt(b, b->hold_begin[h], b->hold_end[h], angle, sign);
+        }
+    }
+}
+
 /* The log of unit `seed`; `bad` of its holds are disturbed. */
 static inline void session_log(session *b, uint64_t seed, double bad)
 {
@@ -332,7 +378,9 @@ static inline void session_log(session *b, uint64_t seed, double bad)
         gyro[axis] = b->unequal * gyro[axis - 1];
         accel[axis] = b->unequal * accel[axis - 1];
     }
+    session_misplace(b, seed, 1.0);
     session_run(b, &b->truth, seed, (uint32_t)seed, true, b->log);
+    session_misplace(b, seed, -1.0);
     session_true_bias(b, seed, (uint32_t)seed);
     /* An encoder of 2e-7 rad: its rates are differences of rounded angles. */
     for (int j = 0; j < 3; j++) {
@@ -360,6 +408,10 @@ static inline void session_log(session *b, uint64_t seed, double bad)
 static inline imk_status session_solve(session *b, imk_error *error)
 {
     imk_calibration_default(&b->calibration);
+    if (b->stated > 0.0) {
+        b->settings.fixture_sigma = b->stated * b->mounting;
+        b->settings.placement_sigma = b->stated * b->placement;
+    }
     b->calibration.observation = b->observation;
     b->calibration.observation_capacity = BENCH_OBSERVATIONS;
     if (b->noise_known) {

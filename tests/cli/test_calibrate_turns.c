@@ -81,6 +81,7 @@ static void turns_are_shown(void **state)
     check_contains(out, "y      -360         -3", line);
     check_contains(out, "turns by stated angles  6", line);
     check_contains(out, "the sign of a gyro", line);
+    check_contains(out, "axes that are not quite those of the unit", line);
     check_contains(out, "Good: gyro bias", line);
     assert_int_equal(run("$I calibrate turns.csv -p turns --json"), 0);
     json_t *all = json_loads(out, 0, NULL);

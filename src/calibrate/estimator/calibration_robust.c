@@ -57,17 +57,17 @@ enum {
 /* ---- distances --------------------------------------------------------------------------------
  */
 
-/* distance[3 item + group]: mean square per degree over its median for normal errors; NaN where the
- * item has nothing in the group. */
+/* distance[IMKI_GROUPS item + group]: mean square per degree over its median for normal errors; NaN
+ * where the item has nothing in the group. */
 static void find_distances(imki_estimator *e)
 {
     for (size_t item = 0; item < e->items; item++) {
-        int degrees[IMK_GROUPS];
-        double square[IMK_GROUPS];
+        int degrees[IMKI_GROUPS];
+        double square[IMKI_GROUPS];
         imki_item_distances(e, item, square, degrees);
-        for (int g = 0; g < IMK_GROUPS; g++) {
+        for (int g = 0; g < IMKI_GROUPS; g++) {
             const double third = degrees[g] > 0 ? 1.0 - 2.0 / (9.0 * degrees[g]) : 1.0;
-            e->distance[3 * item + (size_t)g] =
+            e->distance[IMKI_GROUPS * item + (size_t)g] =
                 degrees[g] > 0 ? square[g] / (degrees[g] * third * third * third) : (double)NAN;
         }
     }
@@ -77,7 +77,7 @@ static size_t count_of(const imki_estimator *e, int g)
 {
     size_t count = 0;
     for (size_t item = 0; item < e->items; item++)
-        count += !isnan(e->distance[3 * item + (size_t)g]);
+        count += !isnan(e->distance[IMKI_GROUPS * item + (size_t)g]);
     return count;
 }
 
@@ -86,7 +86,7 @@ static double middle_of(imki_estimator *e, int g)
 {
     size_t count = 0;
     for (size_t item = 0; item < e->items; item++) {
-        const double d = e->distance[3 * item + (size_t)g];
+        const double d = e->distance[IMKI_GROUPS * item + (size_t)g];
         if (!isnan(d))
             e->sorted[count++] = d;
     }
@@ -94,10 +94,10 @@ static double middle_of(imki_estimator *e, int g)
 }
 
 /* Scale of each group by the median. @return largest relative change */
-static double rescale(imki_estimator *e, double ratio[IMK_GROUPS])
+static double rescale(imki_estimator *e, double ratio[IMKI_GROUPS])
 {
     double change = 0.0;
-    for (int g = 0; g < IMK_GROUPS; g++) {
+    for (int g = 0; g < IMKI_GROUPS; g++) {
         const double middle = sqrt(middle_of(e, g));
         ratio[g] = 1.0;
         if (middle == 0.0)
@@ -107,9 +107,10 @@ static double rescale(imki_estimator *e, double ratio[IMK_GROUPS])
         /* Placements show in the accelerometers, and share their scale. */
         if (g == IMK_GROUP_ACCEL)
             e->factor[IMKI_PART_PLACEMENT] = fmax(1e-3, e->factor[IMKI_PART_PLACEMENT] * ratio[g]);
-        e->factor[g] *= ratio[g];
-        if (!(e->factor[g] > 1e-3))
-            e->factor[g] = 1e-3;
+        int part[IMK_AXES_MAX];
+        const int parts = imki_group_parts(e, g, part);
+        for (int i = 0; i < parts; i++)
+            e->factor[part[i]] = fmax(1e-3, e->factor[part[i]] * ratio[g]);
     }
     return change;
 }
@@ -123,12 +124,12 @@ static double weight_of(double d, bool tukey)
 }
 
 /* An item has the weight of its worst group. */
-static void reweigh(imki_estimator *e, const double ratio[IMK_GROUPS], bool tukey)
+static void reweigh(imki_estimator *e, const double ratio[IMKI_GROUPS], bool tukey)
 {
     for (size_t item = 0; item < e->items; item++) {
         double weight = 1.0;
-        for (int g = 0; g < IMK_GROUPS; g++) {
-            const double d = e->distance[3 * item + (size_t)g];
+        for (int g = 0; g < IMKI_GROUPS; g++) {
+            const double d = e->distance[IMKI_GROUPS * item + (size_t)g];
             if (!isnan(d))
                 weight = fmin(weight, weight_of(sqrt(d) / ratio[g], tukey));
         }
@@ -144,9 +145,9 @@ static imk_status step(imki_estimator *e)
 }
 
 typedef struct limits {
-    double limit[IMK_GROUPS][2][IMKI_ROWS_MAX + 1]; /* of F, by degrees; in use and refused */
+    double limit[IMKI_GROUPS][2][IMKI_ROWS_MAX + 1]; /* of F, by degrees; in use and refused */
     imki_fit fit;
-    imki_group_sum group[IMK_GROUPS];
+    imki_group_sum group[IMKI_GROUPS];
 } limits;
 
 /* Least squares over all items show no bad one; but several might hide each other. Their scatter
@@ -155,7 +156,7 @@ static bool is_suspicious(imki_estimator *e, const limits *l)
 {
     bool suspicious = false;
     find_distances(e);
-    for (int g = 0; g < IMK_GROUPS; g++) {
+    for (int g = 0; g < IMKI_GROUPS; g++) {
         const double middle = middle_of(e, g);
         suspicious =
             suspicious || (middle > 0.0 && (l->group[g].stated * far_scale * far_scale < 1.0 ||
@@ -165,31 +166,33 @@ static bool is_suspicious(imki_estimator *e, const limits *l)
 }
 
 /* Groups in which a few items may draw the fit to them, by what the fit of all items left. */
-static void find_drawn(imki_estimator *e, const double redundancy[IMK_GROUPS],
-                       bool drawn[IMK_GROUPS])
+static void find_drawn(imki_estimator *e, const double redundancy[IMKI_GROUPS],
+                       bool drawn[IMKI_GROUPS])
 {
-    double rows[IMK_GROUPS] = {0.0};
+    double rows[IMKI_GROUPS] = {0.0};
     for (size_t item = 0; item < e->items; item++) {
         const int count = imki_item_rows(e, &e->now, item, e->row);
         for (int i = 0; i < count; i++)
             rows[e->row[i].group] += 1.0;
     }
-    for (int g = 0; g < IMK_GROUPS; g++)
+    for (int g = 0; g < IMKI_GROUPS; g++)
         drawn[g] = redundancy[g] < (1.0 - drawn_share) * rows[g];
 }
 
 /* Scales that a solution has left, by medians: the sum of count log scale^2. `far`: one of them, of
  * a group in which that may be a few items' doing, is far above what is stated. */
-static double objective(imki_estimator *e, const bool drawn[IMK_GROUPS], bool *far)
+static double objective(imki_estimator *e, const bool drawn[IMKI_GROUPS], bool *far)
 {
     double sum = 0.0;
     *far = false;
     find_distances(e);
-    for (int g = 0; g < IMK_GROUPS; g++) {
+    for (int g = 0; g < IMKI_GROUPS; g++) {
         const double middle = middle_of(e, g);
         if (middle == 0.0)
             continue;
-        const double square = e->factor[g] * e->factor[g] * middle;
+        int part[IMK_AXES_MAX];
+        (void)imki_group_parts(e, g, part);
+        const double square = e->factor[part[0]] * e->factor[part[0]] * middle;
         sum += (double)count_of(e, g) * imk_ln(square > 1e-12 ? square : 1e-12);
         *far = *far || (drawn[g] && square > far_scale * far_scale);
     }
@@ -198,7 +201,7 @@ static double objective(imki_estimator *e, const bool drawn[IMK_GROUPS], bool *f
 
 static imk_status reweigh_once(imki_estimator *e, bool tukey, double *change)
 {
-    double ratio[IMK_GROUPS];
+    double ratio[IMKI_GROUPS];
     find_distances(e);
     *change = rescale(e, ratio);
     reweigh(e, ratio, tukey);
@@ -241,10 +244,10 @@ static bool is_majority(imki_estimator *e)
 {
     size_t all = e->parameters, kept = 0;
     for (size_t item = 0; item < e->items; item++) {
-        double square[IMK_GROUPS];
-        int degrees[IMK_GROUPS];
+        double square[IMKI_GROUPS];
+        int degrees[IMKI_GROUPS];
         imki_item_distances(e, item, square, degrees);
-        for (int g = 0; g < IMK_GROUPS; g++) {
+        for (int g = 0; g < IMKI_GROUPS; g++) {
             all += (size_t)degrees[g];
             kept += e->weight[item] > 0.1 ? (size_t)degrees[g] : 0;
         }
@@ -273,9 +276,9 @@ static imk_status try_half(imki_estimator *e, int trial)
     return status;
 }
 
-static imk_status find_majority(imki_estimator *e, const double redundancy[IMK_GROUPS])
+static imk_status find_majority(imki_estimator *e, const double redundancy[IMKI_GROUPS])
 {
-    bool far, drawn[IMK_GROUPS];
+    bool far, drawn[IMKI_GROUPS];
     find_drawn(e, redundancy, drawn);
     imk_status status = reweighted(e, 0);
     if (status != IMK_OK)
@@ -305,7 +308,7 @@ static imk_status find_majority(imki_estimator *e, const double redundancy[IMK_G
 
 /* A placement is told by its readings and by what is known of it before: as the distance of an
  * item counts both, so must what it is compared with. */
-static void add_placements(imki_estimator *e, imki_group_sum sum[IMK_GROUPS])
+static void add_placements(imki_estimator *e, imki_group_sum sum[IMKI_GROUPS])
 {
     for (size_t i = 0; i < e->observations; i++) {
         double matrix[9];
@@ -349,10 +352,10 @@ static double excess(limits *l, bool used, int g, double square, int degrees, do
 
 static double worst_excess(imki_estimator *e, limits *l, size_t item, double probability)
 {
-    double worst = 0.0, square[IMK_GROUPS];
-    int degrees[IMK_GROUPS];
+    double worst = 0.0, square[IMKI_GROUPS];
+    int degrees[IMKI_GROUPS];
     imki_item_distances(e, item, square, degrees);
-    for (int g = 0; g < IMK_GROUPS; g++)
+    for (int g = 0; g < IMKI_GROUPS; g++)
         worst =
             fmax(worst, excess(l, e->weight[item] >= 1.0, g, square[g], degrees[g], probability));
     return worst;
@@ -372,7 +375,7 @@ static bool decide(imki_estimator *e, limits *l)
     double worst = 1.0;
     bool changed = false;
     memset(l->limit, 0, sizeof l->limit);
-    for (int g = 0; g < IMK_GROUPS; g++)
+    for (int g = 0; g < IMKI_GROUPS; g++)
         l->group[g] = imki_sum_group(e, &l->fit, g);
     add_placements(e, l->group);
     for (size_t item = 0; item < e->items; item++) {
@@ -494,8 +497,9 @@ imk_status imki_refuse_outliers(imki_estimator *e)
     status = imki_variance_factors(e, 0.01, &l.fit);
     if (status != IMK_OK)
         return status;
-    double redundancy[IMK_GROUPS]; /* of all items */
-    memcpy(redundancy, l.fit.redundancy, sizeof redundancy);
+    double redundancy[IMKI_GROUPS]; /* of all items */
+    for (int g = 0; g < IMKI_GROUPS; g++)
+        redundancy[g] = imki_sum_group(e, &l.fit, g).redundancy;
     (void)decide(e, &l);
     set_weights(e);
     keep_best(e);

@@ -199,6 +199,7 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
 {
     const imk_calibration *problem = e->problem;
     const int first = e->local_first[index];
+    const bool moving = problem->observation[index].moving;
     exposure x;
     int count = 0;
     expose(e, point, index, &x);
@@ -209,13 +210,15 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
                 continue;
             const imki_axis_reading y = imki_axis_read(&problem->model, sensor, axis, &x.input);
             imki_row *row = &rows[count++];
-            row->group = sensor == IMK_GYRO ? IMK_GROUP_GYRO : IMK_GROUP_ACCEL;
-            row->part = imki_part_of(e, sensor, axis);
+            row->group = moving               ? imki_moving_group(sensor)
+                         : sensor == IMK_GYRO ? IMK_GROUP_GYRO
+                                              : IMK_GROUP_ACCEL;
+            row->part = moving ? imki_moving_part(sensor, axis) : imki_part_of(e, sensor, axis);
             row->sensor = sensor;
             row->axis = axis;
             row->sigma = e->sigma[index][sensor][axis];
             row->known_variance = sensor == IMK_GYRO ? e->known_variance[index][axis] : 0.0;
-            if (e->added[sensor] > 0.0) {
+            if (e->added[sensor] > 0.0 && !moving) {
                 row->known_variance += row->sigma * row->sigma;
                 row->sigma = e->added[sensor];
             }

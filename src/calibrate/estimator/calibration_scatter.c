@@ -80,13 +80,14 @@ static double deviance(imki_estimator *e)
     return sum + e->cost + imki_normal_log_determinant(&e->normal);
 }
 
-/* Root mean square of the sigmas stated of a sensor. */
+/* Root mean square of the sigmas stated of the holds of a sensor. */
 static double typical_sigma(const imki_estimator *e, int sensor, double *unlike)
 {
     double square = 0.0, inverse = 0.0, count = 0.0;
     for (size_t i = 0; i < e->observations; i++)
         for (int axis = 0; axis < IMK_AXES_MAX; axis++)
-            if (!isnan(e->reading[i][sensor][axis]) && e->weight[i] >= 1.0) {
+            if (!isnan(e->reading[i][sensor][axis]) && e->weight[i] >= 1.0 &&
+                !e->problem->observation[i].moving) {
                 const double variance = e->sigma[i][sensor][axis] * e->sigma[i][sensor][axis];
                 square += variance;
                 inverse += 1.0 / variance;

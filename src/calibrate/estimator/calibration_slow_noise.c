@@ -57,8 +57,9 @@ typedef struct sums {
     double walk[IMKI_GLOBALS_MAX];          /* of influence times middle */
     double common[IMKI_GLOBALS_MAX];        /* of influence times covariance with the mean */
     double total[IMKI_GLOBALS_MAX];         /* of influence */
-    double diagonal; /* sum of C_ii over the variance of the row, what locals took left out */
-    double last;     /* end of the stretch before */
+    double diagonal[2]; /* sum of C_ii over the variance of the row, what locals took left out; of
+                           holds, and where the input moves */
+    double last;        /* end of the stretch before */
 } sums;
 
 /* An axis over one record: places in e->slow.order. */
@@ -328,7 +329,7 @@ static void sum_pairs(imki_estimator *e, const run *r, const process *p, sums *s
             s->common[c] += with_mean * influence[c];
             s->total[c] += influence[c];
         }
-        s->diagonal +=
+        s->diagonal[e->problem->observation[item].moving] +=
             (own - 2.0 * with_mean + p->level) * (1.0 - local) / imki_row_variance(e, row);
     }
     add_products(g, s->common, s->total, -1.0, matrix);
@@ -424,8 +425,12 @@ void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit)
                 if (!process_of(e, &r, &p))
                     continue;
                 sum_pairs(e, &r, &p, s);
-                expected[imki_part_of(e, sensor, axis)] +=
-                    s->diagonal - trace_with_information(&e->normal, e->slow.axis);
+                /* What the globals take is shared as what there is. */
+                const double all_rows = s->diagonal[0] + s->diagonal[1];
+                const double taken = trace_with_information(&e->normal, e->slow.axis);
+                const double left = all_rows > 0.0 ? 1.0 - taken / all_rows : 0.0;
+                expected[imki_part_of(e, sensor, axis)] += left * s->diagonal[0];
+                expected[imki_moving_part(sensor, axis)] += left * s->diagonal[1];
                 for (size_t i = 0; i < g * g; i++)
                     e->slow.covariance[i] += e->slow.axis[i];
                 add_level(e, &r, &p, all, s);

@@ -134,6 +134,14 @@ static imk_status solve(imki_estimator *e, imki_fit *fit, double *weakest, imk_e
 /* ---- result -----------------------------------------------------------------------------------
  */
 
+/* Of the result, which has one for all readings of a sensor. */
+static int public_group(const imki_row *row)
+{
+    return row->sensor < 0           ? IMK_GROUP_TURN
+           : row->sensor == IMK_GYRO ? IMK_GROUP_GYRO
+                                     : IMK_GROUP_ACCEL;
+}
+
 static void fill_outputs(imki_estimator *e, imk_calibration_result *result)
 {
     imk_calibration *c = e->problem;
@@ -144,7 +152,7 @@ static void fill_outputs(imki_estimator *e, imk_calibration_result *result)
         double square = 0.0;
         for (int i = 0; i < count; i++) {
             const imki_row *row = &e->row[i];
-            imk_group_fit *group = &result->group[row->group];
+            imk_group_fit *group = &result->group[public_group(row)];
             square += row->residual * row->residual / imki_row_variance(e, row);
             group->count++;
             group->refused += !used;
@@ -178,22 +186,31 @@ static void fill_outputs(imki_estimator *e, imk_calibration_result *result)
     }
 }
 
-/* The factor of a group whose axes have their own is their mean by redundancy. */
+/* The factor of a group whose axes have their own, or that moves and holds still, is their mean by
+ * redundancy. Those of the axes are of holds; where there are none, of what moves. */
 static void fill_factors(const imki_estimator *e, const imki_fit *fit, int g, imk_group_fit *group)
 {
     const int sensor = g == IMK_GROUP_GYRO ? IMK_GYRO : IMK_ACCEL;
     const bool readings = g != IMK_GROUP_TURN;
     const double added = readings ? e->added[sensor] : 0.0;
-    double left = 0.0, square = 0.0;
-    for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
-        const int part = readings ? imki_part_of(e, sensor, axis) : g;
-        const double factor = e->factor[part];
-        group->axis_factor[axis] = added > 0.0 ? 1.0 : factor;
-        group->axis_added[axis] = added * factor;
-        if (axis == 0 || (readings && e->by_axis[sensor])) {
-            left += fit->redundancy[part];
-            square += fit->redundancy[part] * factor * factor;
+    double left = 0.0, square = 0.0, moving = 0.0;
+    int part[IMK_AXES_MAX];
+    for (int of = 0; of < (readings ? 2 : 1); of++) {
+        const int parts = imki_group_parts(e, of ? imki_moving_group(sensor) : g, part);
+        for (int i = 0; i < parts; i++) {
+            const double factor = e->factor[part[i]];
+            left += fit->redundancy[part[i]];
+            moving += of * fit->redundancy[part[i]];
+            square += fit->redundancy[part[i]] * factor * factor;
         }
+    }
+    for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
+        const bool moves = left > 0.0 && moving == left;
+        const int of = !readings ? g
+                       : moves   ? imki_moving_part(sensor, axis)
+                                 : imki_part_of(e, sensor, axis);
+        group->axis_factor[axis] = added > 0.0 ? 1.0 : e->factor[of];
+        group->axis_added[axis] = added * e->factor[of];
     }
     if (added > 0.0)
         square = group->chi_square;

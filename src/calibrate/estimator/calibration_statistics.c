@@ -59,18 +59,18 @@ static double distance_of(const imki_estimator *e, const imki_row *row, int coun
     return sum;
 }
 
-void imki_item_distances(imki_estimator *e, size_t item, double square[IMK_GROUPS],
-                         int degrees[IMK_GROUPS])
+void imki_item_distances(imki_estimator *e, size_t item, double square[IMKI_GROUPS],
+                         int degrees[IMKI_GROUPS])
 {
     const int count = imki_whitened_rows(e, item);
     const bool placed = item < e->observations &&
                         e->problem->observation[item].knowledge == IMK_INPUT_PLACED &&
                         e->local_first[item] >= 0;
-    memset(square, 0, IMK_GROUPS * sizeof *square);
-    memset(degrees, 0, IMK_GROUPS * sizeof *degrees);
+    memset(square, 0, IMKI_GROUPS * sizeof *square);
+    memset(degrees, 0, IMKI_GROUPS * sizeof *degrees);
     for (int first = 0, end; first < count; first = end) { /* rows of a group are neighbours */
-        const int group = (int)e->row[first].group;
-        for (end = first; end < count && (int)e->row[end].group == group;)
+        const int group = e->row[first].group;
+        for (end = first; end < count && e->row[end].group == group;)
             end++;
         square[group] =
             distance_of(e, e->row + first, end - first, e->weight[item],
@@ -128,18 +128,32 @@ int imki_rows_of(imki_estimator *e, size_t k)
     return count;
 }
 
+int imki_group_parts(const imki_estimator *e, int group, int part[IMK_AXES_MAX])
+{
+    const bool moving = group >= IMKI_GROUP_MOVING;
+    const int sensor = moving                    ? group - IMKI_GROUP_MOVING
+                       : group == IMK_GROUP_GYRO ? IMK_GYRO
+                                                 : IMK_ACCEL;
+    if (!moving && (group == IMK_GROUP_TURN || !e->by_axis[sensor])) {
+        part[0] = group;
+        return 1;
+    }
+    for (int axis = 0; axis < IMK_AXES_MAX; axis++)
+        part[axis] = moving ? imki_moving_part(sensor, axis) : imki_part_of(e, sensor, axis);
+    return IMK_AXES_MAX;
+}
+
 imki_group_sum imki_sum_group(const imki_estimator *e, const imki_fit *fit, int group)
 {
-    const int sensor = group == IMK_GROUP_GYRO ? IMK_GYRO : IMK_ACCEL;
-    const bool by_axis = group != IMK_GROUP_TURN && e->by_axis[sensor];
     imki_group_sum sum = {0.0, 0.0, 0.0, false};
+    int part[IMK_AXES_MAX];
+    const int parts = imki_group_parts(e, group, part);
     double stated = 0.0;
-    for (int axis = 0; axis < (by_axis ? IMK_AXES_MAX : 1); axis++) {
-        const int part = group == IMK_GROUP_TURN ? group : imki_part_of(e, sensor, axis);
-        sum.square += fit->square[part];
-        sum.redundancy += fit->redundancy[part];
-        stated += fit->stated[part];
-        sum.estimated = sum.estimated || fit->estimated[part];
+    for (int i = 0; i < parts; i++) {
+        sum.square += fit->square[part[i]];
+        sum.redundancy += fit->redundancy[part[i]];
+        stated += fit->stated[part[i]];
+        sum.estimated = sum.estimated || fit->estimated[part[i]];
     }
     sum.stated = sum.redundancy > 0.0 ? stated / sum.redundancy : 1.0;
     return sum;

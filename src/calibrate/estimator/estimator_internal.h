@@ -21,19 +21,24 @@ enum {
     IMKI_LOCALS_OF_ROW = 6
 };
 
+/* Groups of rows: those of the result, and apart from the holds of each sensor its blocks where the
+ * input moves, which are many and share no error of a hold. */
+enum { IMKI_GROUP_MOVING = IMK_GROUPS, IMKI_GROUPS = IMKI_GROUP_MOVING + 2 };
+
 /* What has a variance factor of its own: the groups of observations, or where a group's residuals
- * are enough, each of its axes instead; and what is assumed before, placements and terms. */
+ * are enough, each of its axes instead; always each axis where the input moves; and what is assumed
+ * before, placements and terms. */
 enum {
     IMKI_PART_PLACEMENT = IMK_GROUPS,
     IMKI_PART_TERMS,
-    IMKI_PART_AXIS, /* of gyros, then of accelerometers */
+    IMKI_PART_MOVING, /* axes of gyros, then of accelerometers */
+    IMKI_PART_AXIS = IMKI_PART_MOVING + 2 * IMK_AXES_MAX, /* the same of holds */
     IMKI_PARTS = IMKI_PART_AXIS + 2 * IMK_AXES_MAX
 };
 
 /* One scalar: observed less predicted, and the derivatives of the prediction. */
 typedef struct imki_row {
-    imk_observation_group group;
-    int part;
+    int group, part;
     int sensor, axis;       /* of a reading; axis is the component of a turn */
     double residual, sigma; /* [unit], sigma as stated */
     double known_variance;  /* besides, which no factor multiplies: the Earth's horizontal rate */
@@ -213,13 +218,22 @@ typedef struct imki_fit {
 } imki_fit;
 /* Squared distances of an item's rows, by group, from what the others predict, over their variance:
  * chi-square with so many degrees (0: nothing to tell it by) when sigmas are right. */
-void imki_item_distances(imki_estimator *e, size_t item, double square[IMK_GROUPS],
-                         int degrees[IMK_GROUPS]);
+void imki_item_distances(imki_estimator *e, size_t item, double square[IMKI_GROUPS],
+                         int degrees[IMKI_GROUPS]);
 imk_status imki_estimator_covariance(imki_estimator *e);
 /* The same from normal equations built for the present point. */
 imk_status imki_built_covariance(imki_estimator *e);
 void imki_fit_groups(imki_estimator *e, imki_fit *fit);
-/* Part of the readings of an axis. */
+/* Group and parts of the readings of a sensor where the input moves. */
+static inline int imki_moving_group(int sensor)
+{
+    return IMKI_GROUP_MOVING + sensor;
+}
+static inline int imki_moving_part(int sensor, int axis)
+{
+    return IMKI_PART_MOVING + sensor * IMK_AXES_MAX + axis;
+}
+/* Part of the readings of an axis in holds. */
 static inline int imki_part_of(const imki_estimator *e, int sensor, int axis)
 {
     const int group = sensor == IMK_GYRO ? IMK_GROUP_GYRO : IMK_GROUP_ACCEL;
@@ -240,10 +254,13 @@ int imki_term_row(const imki_estimator *e, const imki_point *point, size_t p, im
 /* Variance of a row by what was stated of it. */
 static inline double imki_stated_variance(const imki_estimator *e, const imki_row *row)
 {
-    const bool added = row->sensor >= 0 && e->added[row->sensor] > 0.0;
+    const bool added =
+        row->sensor >= 0 && row->group < IMKI_GROUP_MOVING && e->added[row->sensor] > 0.0;
     return row->known_variance + (added ? 0.0 : row->sigma * row->sigma);
 }
-/* The parts of a group as one. */
+/* The parts of a group. @return their number */
+int imki_group_parts(const imki_estimator *e, int group, int part[IMK_AXES_MAX]);
+/* The same as one. */
 typedef struct imki_group_sum {
     double square, redundancy;
     double stated; /* variance stated over variance, on the average */

@@ -92,13 +92,11 @@ static void nominal_counts(imki_turn_list *list, imk_triad *gyro)
 /* ---- variances -------------------------------------------------------------------------------
  */
 
-/* By how much sigmas grow where squares over them sum up to chi_square. Few degrees of freedom are
- * heard only where they say so beyond chance, and with Student's distribution. */
+/* By how much sigmas grow where squares over them sum up to chi_square, with Student's
+ * distribution. They are never made smaller. */
 static double widening(double chi_square, double freedom)
 {
-    if (!(freedom >= 1.0) || !(chi_square > freedom) ||
-        (freedom < freedom_of_estimator &&
-         chi_square < imk_chi_square_quantile(confidence, freedom)))
+    if (!(freedom >= 1.0) || !(chi_square > freedom))
         return 1.0;
     const double tail = 0.5 + 0.5 * confidence;
     return sqrt(chi_square / freedom) * imk_student_quantile(tail, freedom) /
@@ -232,7 +230,8 @@ static double look_at_scatter(const imki_procedure_call *call, const imki_turn_l
                     mean += weight * ratio;
                     turns += 1.0;
                 } else {
-                    const double off = ratio - mean / weights;
+                    /* of the angle, also where a gyro reads in another unit */
+                    const double off = mean != 0.0 ? ratio * weights / mean - 1.0 : 0.0;
                     f->chi_square += weight * off * off;
                     square += off * off * turn->angle * turn->angle;
                 }

@@ -21,7 +21,14 @@ typedef struct plan {
     size_t length, stride; /* samples of a block, and from one used to the next */
     size_t skip_count;
     const imk_reference_stretch *skip;
+    const double *const *turning; /* rates [rad/s]; NULL: not known */
+    double still;                 /* what they differ by at most while a stretch lasts */
 } plan;
+
+/* Part of the record. */
+typedef struct span {
+    size_t at, begin, end; /* of which stretch */
+} span;
 
 /* Of the reference: the mean square of its steps over its variance. */
 static double relative_steps(const imk_test_record *record, const double *const *channel)
@@ -172,23 +179,66 @@ static bool gap_within(const imk_test_record *record, size_t begin, size_t end)
            record->time[end - 1] - record->time[begin] > ((double)(end - begin) - 0.5) * record->dt;
 }
 
-/* Is any sample of the block in a stretch that is left out? `at` moves on with the blocks. */
-static bool skipped(const plan *p, size_t begin, size_t end, size_t *at)
+/* Sample k turns as a stretch does. */
+static bool is_still(const plan *p, const imk_reference_stretch *s, size_t k)
 {
-    while (*at < p->skip_count && p->skip[*at].end <= begin)
-        ++*at;
-    return *at < p->skip_count && p->skip[*at].begin < end;
+    bool still = true;
+    for (int j = 0; j < 3; j++)
+        still = still && fabs(p->turning[j][k] - s->rate[j]) < p->still;
+    return still;
+}
+
+/* A stretch with what was trimmed off it: a block there would have the error of the stretch. */
+static span whole_stretch(const plan *p, size_t at)
+{
+    const imk_reference_stretch *s = &p->skip[at];
+    span whole = {at, s->begin, s->end};
+    while (p->turning && whole.begin > 0 && is_still(p, s, whole.begin - 1))
+        whole.begin--;
+    while (p->turning && whole.end < p->record->count && is_still(p, s, whole.end))
+        whole.end++;
+    return whole;
+}
+
+/* Is any sample of the block in a stretch that is left out? `next` moves on with the blocks. */
+static bool skipped(const plan *p, size_t block_begin, size_t block_end, span *next)
+{
+    const double begin = (double)block_begin - p->lag, end = (double)block_end - p->lag;
+    while (next->at < p->skip_count && (double)next->end <= begin) {
+        const size_t at = next->end > 0 ? next->at + 1 : 0;
+        *next = at < p->skip_count ? whole_stretch(p, at) : (span){.at = at};
+    }
+    return next->at < p->skip_count && (double)next->begin < end;
+}
+
+/* What a stretch may differ by from its neighbours: a hundredth of the fastest. */
+static void find_turning(const imki_procedure_call *call, plan *p)
+{
+    double fastest = 0.0;
+    const bool own = has_own(call, p, IMK_GYRO) && !p->record->counts[IMK_GYRO];
+    p->turning = p->record->reference_rate[0] ? p->record->reference_rate
+                 : own                        ? p->record->reading[IMK_GYRO]
+                                              : NULL;
+    for (size_t i = 0; i < p->skip_count; i++)
+        for (int j = 0; j < 3; j++)
+            fastest = fmax(fastest, fabs(p->skip[i].rate[j]));
+    for (size_t k = 0; p->turning && k < p->record->count; k++)
+        for (int j = 0; j < 3; j++)
+            fastest = fmax(fastest, fabs(p->turning[j][k]));
+    p->still = 0.01 * fastest;
 }
 
 /* Go through the blocks, adding observations, or only counting them where sigma is NULL. */
 static size_t go_through(const imki_procedure_call *call, const plan *p, const double *sigma)
 {
     const imk_test_record *record = p->record;
-    size_t count = 0, at = 0;
+    size_t count = 0;
+    span next = {0};
     for (size_t begin = 0; begin + p->length <= record->count; begin += p->stride) {
         const size_t end = begin + p->length;
         imk_observation o = imki_reference_blank(call, begin, end, p->fixture);
-        if (skipped(p, begin, end, &at) || gap_within(record, begin, end) ||
+        o.moving = true;
+        if (skipped(p, begin, end, &next) || gap_within(record, begin, end) ||
             !imki_reference_usable(call, p->sensor, begin, end) ||
             !input_of(call, p, begin, end, &o))
             continue;
@@ -218,6 +268,7 @@ imk_status imki_reference_blocks(const imki_procedure_call *call, int sensor, do
     /* The force at an accelerometer goes with the square of rates that change fast. */
     p.length = channel && sensor == IMK_GYRO ? block_length(call, record, channel) : 1;
     p.stride = p.length;
+    find_turning(call, &p);
     const size_t count = go_through(call, &p, NULL);
     if (count > BLOCKS_MAX)
         p.stride *= (count + BLOCKS_MAX - 1) / BLOCKS_MAX;

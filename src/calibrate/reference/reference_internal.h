@@ -83,6 +83,9 @@ bool imki_reference_usable(const imki_procedure_call *call, int sensor, size_t b
 /* The smallest sigma worth stating: of a mean whose samples are all the same [unit of the
  * reading]. */
 double imki_reference_floor(const imki_procedure_call *call, int sensor, int axis);
+/* Sigma of a sample of each axis, by that noise. */
+void imki_reference_sigmas(const imki_procedure_call *call, int sensor,
+                           const imki_pooled_noise *noise, double sigma[IMK_AXES_MAX]);
 /* The readings of a sensor in a stretch into an observation, with temperature. */
 void imki_reference_take(const imki_procedure_call *call, int sensor,
                          const imki_pooled_noise *noise, const imk_reference_stretch *stretch,

@@ -320,6 +320,33 @@ static imk_status add_stretches(const observed *o)
     return IMK_OK;
 }
 
+/* Where the readings lag, a stretch of the reference is one of theirs only as far as both last. */
+static void delay_stretches(observed *o)
+{
+    const size_t head = (size_t)ceil(fmax(0.0, o->lag)), tail = (size_t)ceil(fmax(0.0, -o->lag));
+    size_t kept = 0;
+    for (size_t i = 0; i < o->count && head + tail > 0; i++) {
+        imk_reference_stretch s = o->stretch[i];
+        if (s.end - s.begin < head + tail + 2)
+            continue;
+        s.begin += head;
+        s.end -= tail;
+        s.reading = imk_static_summary(o->record, s.begin, s.end);
+        o->stretch[kept++] = s;
+    }
+    o->count = head + tail > 0 ? kept : o->count;
+}
+
+/* Blocks between the stretches; their noise is that within stretches, where there are some. */
+static imk_status add_blocks(const observed *o)
+{
+    const imki_pooled_noise noise = imki_reference_noise(o->call, o->count, o->stretch);
+    double sigma[IMK_AXES_MAX];
+    imki_reference_sigmas(o->call, IMK_GYRO, &noise, sigma);
+    return imki_reference_blocks(o->call, IMK_GYRO, o->lag, o->fixture, o->count, o->stretch,
+                                 o->count > 0 ? sigma : NULL);
+}
+
 /* Smallest eigenvalue of the mean outer product of the directions of force. */
 static double spread_of(const imk_calibration *c, size_t first)
 {
@@ -442,6 +469,7 @@ static imk_status add_observations(observed *o)
             call->findings->lag = o->lag * o->record->dt;
             call->findings->lag_sigma = sigma * o->record->dt;
         }
+        delay_stretches(o);
     }
     imk_status status = IMK_OK;
     if (call->procedure == IMK_PROCEDURE_RATE_TABLE && o->record->counts[IMK_GYRO])
@@ -452,8 +480,8 @@ static imk_status add_observations(observed *o)
             status = check_following(o, sensor);
     if (status != IMK_OK)
         return status;
-    return o->moving ? imki_reference_blocks(call, IMK_GYRO, o->lag, o->fixture, 0, NULL, NULL)
-                     : add_stretches(o);
+    status = add_stretches(o);
+    return o->moving && status == IMK_OK ? add_blocks(o) : status;
 }
 
 /* The axes of the reference are the body frame, unless poses of unknown attitude are in the same

@@ -108,6 +108,14 @@ imki_pooled_noise imki_reference_noise(const imki_procedure_call *call, size_t c
     return noise;
 }
 
+void imki_reference_sigmas(const imki_procedure_call *call, int sensor,
+                           const imki_pooled_noise *noise, double sigma[IMK_AXES_MAX])
+{
+    for (int axis = 0; axis < record_of(call)->axis_count[sensor]; axis++)
+        sigma[axis] =
+            fmax(sqrt(noise->variance[sensor][axis]), imki_reference_floor(call, sensor, axis));
+}
+
 void imki_reference_take(const imki_procedure_call *call, int sensor,
                          const imki_pooled_noise *noise, const imk_reference_stretch *stretch,
                          imk_observation *observation)

@@ -181,9 +181,7 @@ imk_status imki_spin_observe(const imki_procedure_call *call, size_t stretch_cou
                      rest_share * fastest_of(call, stretch_count, stretch)};
     const imki_pooled_noise noise = imki_reference_noise(call, stretch_count, stretch);
     double sigma[IMK_AXES_MAX];
-    for (int axis = 0; axis < record->axis_count[IMK_ACCEL]; axis++)
-        sigma[axis] = fmax(sqrt(noise.variance[IMK_ACCEL][axis]),
-                           imki_reference_floor(call, IMK_ACCEL, axis));
+    imki_reference_sigmas(call, IMK_ACCEL, &noise, sigma);
     imk_status status = add_steady(call, &r, referenced, &noise, fixture);
     if (status == IMK_OK && stretch_count > 0)
         status =

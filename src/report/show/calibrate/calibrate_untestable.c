@@ -9,6 +9,9 @@
 #define add_item(list, words)                                                                      \
     (imki_text_put(list, (list)->size > 0 ? "; " : ""), imki_text_put(list, words))
 
+static const char of_reference[] = "an error of the reference, or of how the unit is mounted (it "
+                                   "goes into bias, scale factor and misalignment)";
+
 static bool is_estimated(const imk_calibrate_log *b, int sensor)
 {
     for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
@@ -31,11 +34,11 @@ static bool has(const imk_calibrate_log *b, imk_procedure first, imk_procedure l
 /* With references the rates and forces are known: a clock takes no part. */
 static void add_of_gyros(const imk_calibrate_log *b, imki_text *list)
 {
+    const imk_model_parameter across = {IMK_GYRO, IMK_MODEL_MISALIGNMENT, 0, 1};
     if (!is_estimated(b, 0))
         return;
     if (has(b, IMK_PROCEDURE_RATE_TABLE, IMK_PROCEDURE_SPIN, false))
-        add_item(list, "an error of the reference (it goes into bias, scale factor and "
-                       "misalignment)");
+        add_item(list, of_reference);
     else if (has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_FERRARIS, false) ||
              has(b, IMK_PROCEDURE_TURNS, IMK_PROCEDURE_TURNS, false))
         add_item(list, "a sampling rate that is some per cent off (the scale factors of all "
@@ -43,6 +46,10 @@ static void add_of_gyros(const imk_calibrate_log *b, imki_text *list)
     if (b->nominal[0] && imki_has_only_turns(b))
         add_item(list, "turns by another angle than stated (the sensitivity found is wrong by as "
                        "much)");
+    if (imk_calibrate_find(b, across) >= 0 &&
+        has(b, IMK_PROCEDURE_TURNS, IMK_PROCEDURE_TURNS, false))
+        add_item(list, "turns about axes that are not quite those of the unit (the misalignments "
+                       "change by as much; --placement counts in their uncertainty)");
     bool read = false;
     for (size_t k = 0; k < b->count; k++)
         read = read || b->record[k].findings.known_turns.direction_read;
@@ -97,6 +104,9 @@ static void add_of_axes(const imk_calibrate_log *b, imki_text *list)
 
 static void add_of_gravity(const imk_calibrate_log *b, imki_text *list)
 {
+    const bool referenced = has(b, IMK_PROCEDURE_RATE_TABLE, IMK_PROCEDURE_SPIN, false);
+    if (is_estimated(b, 1) && !is_estimated(b, 0) && referenced)
+        add_item(list, of_reference);
     if (!is_estimated(b, 1) || !has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_FERRARIS, false))
         return;
     add_item(list, "gravity that is some per cent off (the scale factors of all "
@@ -116,7 +126,8 @@ static void add_of_single_attitudes(const imk_calibrate_log *b, imki_text *list)
         b->result->group[IMK_GROUP_ACCEL].degrees_of_freedom < least_freedom)
         add_item(list,
                  "errors of the accelerometers that stay for a whole attitude, such as a bias "
-                 "that drifts from one to the next (take each attitude again)");
+                 "that drifts from one to the next: they go into bias, scale factor and "
+                 "misalignment (take each attitude again)");
 }
 
 /* The sign of the dip tells which way round a magnetometer is, where it is known. */
