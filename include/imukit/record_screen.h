@@ -35,7 +35,7 @@ typedef struct imk_screen_settings {
 IMK_API imk_screen_settings imk_screen_default(void);
 
 /** Places in the list of steps. */
-enum { IMK_SCREEN_STEPS = 16 };
+enum { IMK_SCREEN_STEPS = 16, IMK_SCREEN_MOVES = 16 };
 
 /** Result for one channel. Values are in the channel's unit. */
 typedef struct imk_screen {
@@ -112,9 +112,9 @@ typedef struct imk_screen {
 
     imk_screen_count moved; /**< samples in stretches in which the sensor was moved; then steps,
                                warm-up and temperature are not looked for */
-    size_t moved_end;       /**< behind the last of them; n when there is none */
-    size_t still_first, still_end; /**< longest stretch in which it was not: samples first … end - 1
-                                    */
+    /** These stretches, moved.runs of them: samples first … end - 1. The IMK_SCREEN_MOVES-th
+     *  holds the rest of the record. */
+    size_t move_first[IMK_SCREEN_MOVES], move_end[IMK_SCREEN_MOVES];
 
     double cycle_amplitude; /**< of a level that goes up and down regularly; 0: it does not */
     double cycle_period;    /**< [s] */

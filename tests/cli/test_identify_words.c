@@ -242,6 +242,27 @@ static void test_what_cannot_be_seen(void **state)
     sweep();
 }
 
+/* The part at rest is that of all channels: the longest ones of both share 20 s here. */
+static void test_part_at_rest(void **state)
+{
+    (void)state;
+    make_log("a = 40 * sin(t / 2); if (t > 100 && t < 110 || t > 450 && t < 460) $2 += a; if (t > "
+             "480 && t < 490 || t > 850) $3 += a");
+    assert_int_equal(run("$I identify log.csv"), 0);
+    check_contains(out, "Not usable: the sensor was moved", "first line");
+    double after = 0, before = 0;
+    const char *at = strstr(out, "--after ");
+    assert_non_null(at);
+    assert_int_equal(sscanf(at, "--after %lfs --before %lf", &after, &before), 2);
+    assert_in_range(after, 490, 500); /* the rests are 100, 340, 20 and 360 s */
+    assert_in_range(before, 840, 850);
+    char line[200];
+    snprintf(line, sizeof line, "$I identify log.csv --after %gs --before %gs --strict", after,
+             before);
+    assert_int_equal(run(line), 0);
+    sweep();
+}
+
 /* A channel that has no model says why: what the screening saw in it. */
 static void test_no_model(void **state)
 {
@@ -339,6 +360,7 @@ int main(void)
                                        cmocka_unit_test(test_axis_of_another_unit),
                                        cmocka_unit_test(test_numbers_of_no_gyro),
                                        cmocka_unit_test(test_what_cannot_be_seen),
+                                       cmocka_unit_test(test_part_at_rest),
                                        cmocka_unit_test(test_no_model),
                                        cmocka_unit_test(test_averages),
                                        cmocka_unit_test(test_unit_of_the_header),

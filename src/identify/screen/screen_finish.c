@@ -195,32 +195,25 @@ static void find_cycle(imk_screener *s)
  * short ones, and where it had not settled. */
 static void find_moves(imk_screener *s)
 {
-    enum { MOST = 16, EDGE = 4 };
+    enum { MOST = IMK_SCREEN_MOVES, EDGE = 4 };
     static const size_t means[] = {IMKI_SCREEN_LEVELS, 512, 128};
     imk_screen *f = &s->found;
     double *mean = s->room, *other = mean + IMKI_SCREEN_LEVELS, empty = 0;
     imki_move move[MOST];
     bool thermal;
-    size_t still = 0, count = 0, n = 0, length = 0;
+    size_t count = 0, n = 0, length = 0;
     for (size_t k = 0; count == 0 && k < sizeof means / sizeof means[0]; k++) {
         n = take_means(s, means[k], mean, other, &thermal, &empty);
         length = imki_levels_length(&s->levels, means[k]);
         const double least = length > 0 ? f->resolution / sqrt((double)length) : 0;
         count = imki_moves_find(n, mean, empty, least, k == 0 ? EDGE : 0, other, move, MOST);
     }
-    f->moved = (imk_screen_count){.runs = count, .first = f->n};
-    f->moved_end = f->still_end = f->n;
-    for (size_t k = 0; k <= count; k++) {
-        const size_t first = k < count ? move[k].first * length : f->n;
-        if (k == 0 || first - still > f->still_end - f->still_first) {
-            f->still_first = still;
-            f->still_end = first;
-        }
-        if (k == count)
-            break;
-        still = f->moved_end = move[k].end < n ? move[k].end * length : f->n;
-        f->moved.count += still - first;
-        f->moved.first = k == 0 ? first : f->moved.first;
+    f->moved =
+        (imk_screen_count){.runs = count, .first = count > 0 ? move[0].first * length : f->n};
+    for (size_t k = 0; k < count; k++) {
+        f->move_first[k] = move[k].first * length;
+        f->move_end[k] = k + 1 < MOST && move[k].end < n ? move[k].end * length : f->n;
+        f->moved.count += f->move_end[k] - f->move_first[k];
     }
 }
 

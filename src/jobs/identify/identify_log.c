@@ -72,22 +72,38 @@ imk_screen_settings imki_screen_settings(const imk_identify_log *log)
     return settings;
 }
 
-imk_identify_moves imk_identify_log_moves(const imk_identify_log *log)
+/* Where the sensor rests behind a sample: up to the next stretch in which a channel was moved; the
+ * sample itself, if it is in one. */
+static size_t rest_behind(const imk_identify_log *log, size_t sample)
 {
-    size_t first = SIZE_MAX, end = 0, still_first = 0, still_end = SIZE_MAX;
+    size_t end = log->record.rows;
     for (size_t c = 0; c < log->record.count; c++) {
         const imk_screen *s = &log->screen[c];
-        if (s->moved.count == 0)
-            continue;
-        first = s->moved.first < first ? s->moved.first : first;
-        end = s->moved_end > end ? s->moved_end : end;
-        still_first = s->still_first > still_first ? s->still_first : still_first;
-        still_end = s->still_end < still_end ? s->still_end : still_end;
+        for (size_t k = 0; k < s->moved.runs; k++)
+            if (s->move_end[k] > sample && s->move_first[k] < end)
+                end = s->move_first[k] > sample ? s->move_first[k] : sample;
+    }
+    return end;
+}
+
+imk_identify_moves imk_identify_log_moves(const imk_identify_log *log)
+{
+    const double dt = log->record.dt;
+    size_t first = SIZE_MAX, end = 0, still_first = 0, still_end = rest_behind(log, 0);
+    for (size_t c = 0; c < log->record.count; c++) {
+        const imk_screen *s = &log->screen[c];
+        for (size_t k = 0; k < s->moved.runs; k++) {
+            const size_t still = s->move_end[k], next = rest_behind(log, still);
+            first = s->move_first[k] < first ? s->move_first[k] : first;
+            end = still > end ? still : end;
+            if (next - still > still_end - still_first) {
+                still_first = still;
+                still_end = next;
+            }
+        }
     }
     if (first == SIZE_MAX)
         return (imk_identify_moves){.moved = false};
-    still_end = still_end > still_first ? still_end : still_first;
-    const double dt = log->record.dt;
     return (imk_identify_moves){.moved = true,
                                 .first = (double)first * dt,
                                 .end = (double)end * dt,
