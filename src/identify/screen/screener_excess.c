@@ -12,6 +12,12 @@
 enum { EVERY = 8 };
 
 static const double deviations = 6;
+static const double coarsest = 1.4; /* step over scale: beyond it rounding is no noise */
+
+bool imki_screen_has_noise(const imk_screener *s)
+{
+    return s->scale > 0 && s->step <= coarsest * s->scale;
+}
 
 bool imki_screen_counts(size_t chunk)
 {

@@ -10,7 +10,8 @@
  *
  * is how many are due, the mean of both sides. Tails that are heavier than Gaussian ones make this
  * too large, and by how much values farther off differ from it is its error. Only values that are
- * equal to the digit are compared, so that no step need be known; noise without steps has none due.
+ * equal, but for the rounding of a rate that is an increment over a time, are compared, so that no
+ * step need be known; noise without steps has none due.
  * A candidate that lies closer to the values beside it than any two others do is none of the
  * converter's.
  *
@@ -25,6 +26,8 @@
 enum { SIDE = IMKI_FREQUENT_SIDE, CROWD_MIN = 20 };
 
 static const double candidate_share = 0.01; /* too many, of a chunk */
+static const double equal_of_scale = 1e-7;
+static const double at_rest = 0.5; /* a value of more samples is where a coarse output rests */
 static const double least_share = 0.03, least_factor = 1.2, uneven_deviations = 3;
 static const double due_deviations = 6, most_of_beside = 3;
 static const double off_grid = 0.9;
@@ -41,7 +44,7 @@ static size_t sort_values(imk_screener *s)
     }
     imki_sort(s->value, present);
     for (size_t i = 0; i < present; i++)
-        if (i == 0 || s->value[i] != s->value[i - 1])
+        if (i == 0 || s->value[i] - s->value[i - 1] > equal_of_scale * s->scale)
             s->place[count++] = (uint32_t)i;
     s->place[count] = (uint32_t)present;
     return count;
@@ -130,10 +133,11 @@ static void find_candidate(imk_screener *s, size_t values)
 {
     imki_frequent *f = &s->frequent;
     const double least = candidate_share * (double)s->count[0];
+    const double all = (double)s->place[values];
     double most = least, unused;
     size_t best = 0;
     for (size_t at = SIDE; at + SIDE < values; at++) {
-        if (number_of(s, at) < least)
+        if (number_of(s, at) < least || number_of(s, at) > at_rest * all)
             continue;
         const bool alone = is_alone(s, values, at);
         const double excess = number_of(s, at) - (alone ? 0 : due_at(s, at, values, 0, &unused));
@@ -146,6 +150,7 @@ static void find_candidate(imk_screener *s, size_t values)
     if (best == 0)
         return;
     f->candidate = true;
+    f->equal = equal_of_scale * s->scale;
     f->uneven = f->alone ? 0 : unevenness(s, values, best);
     for (size_t k = 0; k <= 2 * SIDE; k++)
         f->value[k] = value_of(s, best + k - SIDE);
@@ -181,7 +186,7 @@ static double widest_gap(const imk_screener *s, size_t values)
 void imki_screen_frequent(imk_screener *s)
 {
     imki_frequent *f = &s->frequent;
-    if (!f->looked && s->scale > 0) {
+    if (!f->looked && imki_screen_has_noise(s)) {
         const size_t values = sort_values(s);
         f->looked = true;
         find_candidate(s, values);
@@ -193,7 +198,7 @@ void imki_screen_frequent(imk_screener *s)
     for (size_t k = 0; k <= 2 * SIDE; k++) {
         size_t equal = 0;
         for (size_t i = 0; i < s->count[0]; i++)
-            equal += s->clean[i] == f->value[k];
+            equal += fabs(s->clean[i] - f->value[k]) <= f->equal;
         f->number[k] += (double)equal;
     }
 }

@@ -78,6 +78,7 @@ typedef struct imki_frequent {
     bool looked, candidate;
     bool alone; /* beside the steps of the others */
     double samples;
+    double equal;  /* difference of values that are one */
     double uneven; /* mean square error of the logarithm of what is due */
     double value[2 * IMKI_FREQUENT_SIDE + 1], number[2 * IMKI_FREQUENT_SIDE + 1];
 } imki_frequent;
@@ -169,6 +170,8 @@ void imki_edges_add(imki_edges *high, imki_edges *low, size_t count, const doubl
 bool imki_edge_is_abrupt(const imki_edges *edges, double deviation, double step);
 
 /* screener_excess.c */
+/* Has the chunk noise, and steps fine enough that it spreads over them? */
+bool imki_screen_has_noise(const imk_screener *s);
 /* Are the samples of the chunk counted for what follows? */
 bool imki_screen_counts(size_t chunk);
 /* Share of the samples by which more are counted than due; 0: no more than chance has, than

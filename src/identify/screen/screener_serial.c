@@ -28,7 +28,6 @@ static const double repeats_least = 0.015, straight_least = 0.02;
 static const double small_of_scale = 1e-3; /* second differences that vanish, without steps */
 static const double near_of_deviation = 0.5;
 static const double least_factor = 1.05;
-static const double coarsest = 1.4; /* step over scale: beyond it rounding is no noise */
 
 typedef struct tally {
     double count, square, there;
@@ -101,8 +100,7 @@ static void add(const imk_screener *s, imki_excess *e, bool second, double least
 
 void imki_screen_serial(imk_screener *s)
 {
-    if (!imki_screen_counts(s->chunk) || s->count[0] < SAMPLES_MIN || !(s->scale > 0) ||
-        s->step > coarsest * s->scale)
+    if (!imki_screen_counts(s->chunk) || s->count[0] < SAMPLES_MIN || !imki_screen_has_noise(s))
         return;
     if ((double)s->chunk_repeats[0] > 0.5 * repeats_least * (double)s->count[0])
         add(s, &s->repeated, false, repeats_least);

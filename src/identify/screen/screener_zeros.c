@@ -26,7 +26,7 @@ enum { STEPS = 3, FAR = 30, REPEATS = 3, FINE = 3, ONE_MIN = 25, TWO_MIN = 4 };
 
 /* Of the range of the other samples: so far are they from zero, and from another value. */
 static const double apart = 0.25, far_apart = 2;
-static const double coarsest = 1.4, least_share = 0.015, least_factor = 1.2;
+static const double least_share = 0.015, least_factor = 1.2;
 
 static size_t count_zeros(size_t count, const double *x)
 {
@@ -123,7 +123,7 @@ void imki_screen_zeros(imk_screener *s)
         return;
     z->samples += (double)s->count[0];
     const double zeros = (double)count_zeros(s->count[0], s->clean), step = s->step;
-    if (zeros == 0 || !(s->scale > 0) || step > coarsest * s->scale)
+    if (zeros == 0 || !imki_screen_has_noise(s))
         return;
     if (step > 0 && step * 2 * FINE > s->scale) {
         z->coarse += zeros;

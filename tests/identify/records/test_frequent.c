@@ -44,6 +44,23 @@ static void test_beside(void **state)
     CHECK_CLOSE(screen().filled, 0.0625, 0.001);
 }
 
+/* Rates that are increments over times: equal ones differ in the last digits. */
+static void test_increments(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 2; seed++) {
+        make(40 + seed, 3, 0, 0);
+        round_to(0.5);
+        for (size_t i = 5; seed == 1 && i < N; i += 16)
+            rate[i] = 3;
+        for (size_t i = 0; i < N; i++)
+            rate[i] *= 1 + 1e-12 * sin((double)i);
+        const imk_screen found = screen();
+        assert_true(found.gap == 0);
+        CHECK_CLOSE(found.filled, seed == 1 ? 0.0625 : 0, 0.02);
+    }
+}
+
 /* Of every ten samples one repeats the one before, or is the mean of its neighbours. */
 static void test_serial(void **state)
 {
@@ -93,7 +110,8 @@ static void test_sound(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_filled), cmocka_unit_test(test_beside), cmocka_unit_test(test_serial),
+        cmocka_unit_test(test_filled), cmocka_unit_test(test_beside),
+        cmocka_unit_test(test_serial), cmocka_unit_test(test_increments),
         cmocka_unit_test(test_gap),    cmocka_unit_test(test_sound),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
