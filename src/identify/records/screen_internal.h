@@ -21,6 +21,17 @@ double imki_record_resolution(size_t n, const double *samples, double *scratch,
 bool imki_record_sticks(size_t n, const double *samples, double extreme, double toward,
                         double step);
 
+/* coarse_ranges.c */
+enum { IMKI_BLOCK = 32 }; /* samples whose range and variance are looked at */
+/* Highest less lowest of IMKI_BLOCK samples. */
+double imki_block_range(const double *value);
+/* The step of ranges or distances, in order; where half of them are zero there is one even if it
+ * was not seen: the smallest that is not. */
+double imki_coarse_step(size_t count, const double *sorted, double resolution);
+/* Median of multiples of a step: between the edges of its cell, in proportion. (Rounding to steps
+ * would else make it zero, or far too small.) */
+double imki_median_on_steps(size_t count, const double *sorted, double step);
+
 /* record_verdict.c: of a whole record. */
 unsigned imki_record_verdict(size_t n, const double *samples, double resolution, double deviation);
 

@@ -20,9 +20,8 @@
 #include <math.h>
 
 enum {
-    BLOCK = 32,
-    LANES = 8,
-    CHUNK = BLOCK * LANES,
+    BLOCK = IMKI_BLOCK,
+    CHUNK = 8 * BLOCK,
     REACH = 15, /* neighbours on each side */
     WINDOW = 2 * REACH + 1
 };
@@ -84,51 +83,6 @@ static double level_around(const stretch *s, size_t i, double *spread)
     return level;
 }
 
-/* Highest less lowest of a block, in lanes that the compiler makes vectors of. */
-static double range_of(const double *value)
-{
-    double low[LANES], high[LANES];
-    for (size_t l = 0; l < LANES; l++)
-        low[l] = high[l] = value[l];
-    for (size_t i = LANES; i < BLOCK; i += LANES)
-        for (size_t l = 0; l < LANES; l++) {
-            const double v = value[i + l];
-            low[l] = v < low[l] ? v : low[l];
-            high[l] = v > high[l] ? v : high[l];
-        }
-    for (size_t l = 1; l < LANES; l++) {
-        low[0] = low[l] < low[0] ? low[l] : low[0];
-        high[0] = high[l] > high[0] ? high[l] : high[0];
-    }
-    return high[0] - low[0];
-}
-
-/* The step of coarse values; where half of them do not differ from their neighbourhood there is one
- * even if other samples hide it: the smallest difference. */
-static double step_of(size_t count, const double *sorted, double resolution)
-{
-    size_t i = 0;
-    while (i < count && sorted[i] == 0)
-        i++;
-    return resolution > 0 || 2 * i < count || i == count ? resolution : sorted[i];
-}
-
-/* Median of distances that are multiples of a step: between the edges of its cell, in proportion.
- * (Rounding to steps would else make it zero, or far too small.) */
-static double median_on_grid(size_t count, const double *sorted, double step)
-{
-    const double median = sorted[count / 2];
-    if (!(step > 0))
-        return median;
-    size_t below = 0, end = 0;
-    while (sorted[below] < median - step / 4)
-        below++;
-    for (end = below; end < count && sorted[end] < median + step / 4;)
-        end++;
-    const double low = median > step / 4 ? median - step / 2 : 0, high = median + step / 2;
-    return low + (high - low) * (0.5 * (double)count - (double)below) / (double)(end - below);
-}
-
 /* Distance of the middle one of the next 31 samples that are there from their median; negative when
  * there are not so many. */
 static double distance_at(size_t n, const double *samples, size_t from)
@@ -164,8 +118,8 @@ imki_outlier_rule imki_outlier_rule_find(size_t n, const double *samples, double
         scratch[taken++] = distance;
     }
     imki_sort(scratch, taken);
-    const double step = step_of(taken, scratch, resolution);
-    rule.noise = 1.4826 * median_on_grid(taken, scratch, step);
+    const double step = imki_coarse_step(taken, scratch, resolution);
+    rule.noise = 1.4826 * imki_median_on_steps(taken, scratch, step);
     const double z = -imk_normal_quantile(false_alarm / (2 * (double)present));
     /* The scale is known to 1.2/sqrt(taken); three of that are added. */
     rule.threshold = z * rule.noise * (1 + 3.6 / sqrt((double)taken)) + 1.5 * step;
@@ -209,7 +163,7 @@ imk_screen_count imki_outliers_find(size_t n, const double *samples, const imki_
         const size_t end = last ? s.count : s.count - REACH;
         size_t i = s.margin;
         for (; i + BLOCK <= end; i += BLOCK) {
-            if (range_of(s.value + i) < 0.9 * rule->threshold)
+            if (imki_block_range(s.value + i) < 0.9 * rule->threshold)
                 continue;
             double sorted[BLOCK];
             for (size_t k = 0; k < BLOCK; k++)

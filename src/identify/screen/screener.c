@@ -14,7 +14,7 @@
 enum {
     COOKIE = 0x5C4EE401,
     CHUNK = IMKI_SCREEN_CHUNK,
-    BLOCK = IMKI_SCREEN_BLOCK,
+    BLOCK = IMKI_BLOCK,
     MARGIN = 2 * IMKI_SCREEN_REACH + 2,
     RESOLVED_EVERY = 8, /* chunks whose values are looked at for a step */
     RESOLVED_OF = 2048, /* samples of them */

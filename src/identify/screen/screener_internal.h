@@ -10,7 +10,6 @@
 
 enum {
     IMKI_SCREEN_CHUNK = 8192,
-    IMKI_SCREEN_BLOCK = 32, /* samples whose range and variance are looked at */
     IMKI_SCREEN_REACH = 15, /* neighbours on each side that make the level of a sample */
     IMKI_SCREEN_LEVELS = 2048,
     IMKI_SCREEN_SHARES = 64,

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { BLOCK = IMKI_SCREEN_BLOCK };
+enum { BLOCK = IMKI_BLOCK };
 
 void imki_screen_extremes(size_t count, const double *x, double *low, double *high)
 {

@@ -23,8 +23,7 @@
 #include <string.h>
 
 enum {
-    BLOCK = IMKI_SCREEN_BLOCK,
-    LANES = 8,
+    BLOCK = IMKI_BLOCK,
     REACH = IMKI_SCREEN_REACH,
     WINDOW = 2 * REACH + 1,
     RANGES = IMKI_SCREEN_CHUNK / BLOCK
@@ -73,66 +72,21 @@ static double spread_beside(const stretch *s, size_t i)
     return fmax(before, behind);
 }
 
-/* Highest less lowest of a block, in lanes that the compiler makes vectors of. */
-static double range_of(const double *value)
-{
-    double low[LANES], high[LANES];
-    for (size_t l = 0; l < LANES; l++)
-        low[l] = high[l] = value[l];
-    for (size_t i = LANES; i < BLOCK; i += LANES)
-        for (size_t l = 0; l < LANES; l++) {
-            const double v = value[i + l];
-            low[l] = v < low[l] ? v : low[l];
-            high[l] = v > high[l] ? v : high[l];
-        }
-    for (size_t l = 1; l < LANES; l++) {
-        low[0] = low[l] < low[0] ? low[l] : low[0];
-        high[0] = high[l] > high[0] ? high[l] : high[0];
-    }
-    return high[0] - low[0];
-}
-
-/* The step of coarse values; where half of the ranges are zero there is one even if it was not
- * seen: the smallest range. */
-static double step_of(size_t count, const double *sorted, double resolution)
-{
-    size_t i = 0;
-    while (i < count && sorted[i] == 0)
-        i++;
-    return resolution > 0 || 2 * i < count || i == count ? resolution : sorted[i];
-}
-
-/* Median of multiples of a step: between the edges of its cell, in proportion. (Rounding to steps
- * would else make it zero, or far too small.) */
-static double median_on_grid(size_t count, const double *sorted, double step)
-{
-    const double median = sorted[count / 2];
-    if (!(step > 0))
-        return median;
-    size_t below = 0, end = 0;
-    while (sorted[below] < median - step / 4)
-        below++;
-    for (end = below; end < count && sorted[end] < median + step / 4;)
-        end++;
-    const double low = median > step / 4 ? median - step / 2 : 0, high = median + step / 2;
-    return low + (high - low) * (0.5 * (double)count - (double)below) / (double)(end - below);
-}
-
 /* Scale and thresholds of the chunk. Few ranges, or none but zero: those of the chunk before. */
 static void set_scale(imk_screener *s, stretch *in)
 {
     double range[RANGES];
     size_t count = 0;
     for (size_t i = in->margin; i + BLOCK <= in->end; i += BLOCK)
-        range[count++] = range_of(in->value + i);
+        range[count++] = imki_block_range(in->value + i);
     in->threshold = in->shoulder = HUGE_VAL;
     if (count == 0 && !(s->scale > 0))
         return;
     double step = s->step;
     if (count > (s->scale > 0 ? 7u : 0u)) {
         imki_sort(range, count);
-        step = step_of(count, range, step);
-        const double scale = median_on_grid(count, range, step) / median_range;
+        step = imki_coarse_step(count, range, step);
+        const double scale = imki_median_on_steps(count, range, step) / median_range;
         s->scale = scale > 0 ? scale : s->scale;
     }
     if (!(s->scale > 0))
@@ -216,7 +170,7 @@ void imki_screen_outliers(imk_screener *s)
     set_scale(s, &in);
     size_t i = in.margin;
     for (; in.threshold < HUGE_VAL && i + BLOCK <= in.end; i += BLOCK)
-        if (!(range_of(in.value + i) < in.shoulder))
+        if (!(imki_block_range(in.value + i) < in.shoulder))
             assess_block(s, &in, i);
     for (; in.threshold < HUGE_VAL && i < in.end; i++)
         assess(s, &in, i);
