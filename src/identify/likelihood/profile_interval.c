@@ -128,8 +128,8 @@ imki_interval_profile imki_interval_profile_at(const imki_work *w, int held, dou
                                                double *centre, double *step)
 {
     const imki_fit *fit = w->fit;
-    imki_interval_profile p = {w->fit,      w->bands, held, IMKI_HELD_NONE, imki_fit_keep(w->fit),
-                               .drop = drop};
+    imki_interval_profile p = {w->fit, w->bands, held, IMKI_HELD_NONE, imki_fit_keep(w->fit),
+                               0,      drop};
     p.top = height(&p);
     if (held == IMKI_HELD_RAMP) {
         *step = 1 / sqrt(imki_fit_ramp_information(fit, w->bands));
