@@ -39,6 +39,8 @@ static const truth cases[] = {
     {.name = "N R", .term = {0, 1, 0, 0, 0.002}},
     {.name = "N B R", .term = {0, 1, 1, 0, 0.012}},
     {.name = "N B R *", .term = {0, 1, 1, 0, 0.012}, .fractional = true},
+    {.name = "N K R", .term = {0, 1, 0, 0.02, 0.01}},
+    {.name = "N B K R", .term = {0, 1, 1, 0.1, 0.012}},
     {.name = "N GM 0.04", .term = {0, 1}, .gauss_markov = {GM(5, 0.04)}},
     {.name = "N B GM 0.04", .term = {0, 1, 1}, .gauss_markov = {GM(5, 0.04)}},
     {.name = "N GM 0.1", .term = {0, 1}, .gauss_markov = {GM(3, 0.1)}},

@@ -119,7 +119,13 @@ double imki_fit_maximise(imki_fit *fit, const imki_bands *bands);
 double imki_fit_profile(imki_fit *fit, const imki_bands *bands, int held, double value);
 /* Covariance of the active amounts, templates x templates, row-major; zero for the others. */
 void imki_fit_covariance(imki_fit *fit, const imki_bands *bands, double *covariance);
+/* Degrees of freedom v of a function of the amounts, given its value and slope: of the chi-square
+ * whose variance is the same part 2/v of its square [SATTERTHWAITE1946]; at most 1e6. */
+double imki_fit_degrees(imki_fit *fit, const imki_bands *bands, double value, const double *slope);
+/* Of the ramp's estimate: the inverse of its variance, and the degrees of freedom of that, less the
+ * one that the ramp takes. */
 double imki_fit_ramp_information(const imki_fit *fit, const imki_bands *bands);
+double imki_fit_ramp_degrees(imki_fit *fit, const imki_bands *bands);
 double imki_fit_spectrum(const imki_fit *fit, size_t band);
 imki_amounts imki_fit_keep(const imki_fit *fit);
 /* Shapes of Gauss-Markov templates whose time has changed since are made again. */
@@ -238,6 +244,7 @@ typedef struct imki_interval_profile {
     const imki_bands *bands;
     int held, held_time;
     imki_amounts best;
+    double top;  /* log-likelihood there */
     double drop; /* of the log-likelihood, at the interval's end */
 } imki_interval_profile;
 /* profile_interval.c: below 0 inside the interval. The fit is left at the place. */
@@ -248,6 +255,8 @@ double imki_interval_end(const imki_interval_profile *p, double start, double st
  * and a first step from it. */
 imki_interval_profile imki_interval_profile_at(const imki_work *w, int held, double drop,
                                                double *centre, double *step);
+/* What a drop is multiplied by where the variance of a mean is known with v degrees. */
+double imki_student_factor(double v);
 /* White noise, bias instability, random walk and a term free as well; everything fitted again. */
 void imki_intervals_free(imki_work *w, int term);
 /* Quantization out of the fit, or into it; everything fitted again. */

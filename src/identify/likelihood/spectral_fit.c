@@ -168,12 +168,34 @@ void imki_fit_covariance(imki_fit *fit, const imki_bands *bands, double *covaria
             covariance[index[i] * t + index[j]] = inverse[i * count + j] * scale[i] * scale[j];
 }
 
+double imki_fit_degrees(imki_fit *fit, const imki_bands *bands, double value, const double *slope)
+{
+    const size_t t = fit->templates;
+    double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX], variance = 0;
+    imki_fit_covariance(fit, bands, covariance);
+    for (size_t i = 0; i < t; i++)
+        for (size_t j = 0; j < t; j++)
+            variance += covariance[i * t + j] * slope[i] * slope[j];
+    return fmin(1e6, 2 * value * value / variance);
+}
+
 double imki_fit_ramp_information(const imki_fit *fit, const imki_bands *bands)
 {
     double sum = 0;
     for (size_t b = 0; b < bands->singles; b++)
         sum += bands->ramp[b] * bands->ramp[b] * bands->dt / imki_fit_spectrum(fit, b);
     return sum;
+}
+
+double imki_fit_ramp_degrees(imki_fit *fit, const imki_bands *bands)
+{
+    double slope[IMKI_TEMPLATES_MAX] = {0}; /* of the information, its sign changed */
+    for (size_t j = 0; j < fit->templates; j++)
+        for (size_t b = 0; fit->active[j] && b < bands->singles; b++) {
+            const double ratio = bands->ramp[b] / imki_fit_spectrum(fit, b);
+            slope[j] += ratio * ratio * bands->dt * fit->shape[j][b];
+        }
+    return imki_fit_degrees(fit, bands, imki_fit_ramp_information(fit, bands), slope) - 1;
 }
 
 /* Best ramp for the present spectrum: weighted mean of c/d. */

@@ -55,25 +55,16 @@ imki_penalties imki_penalties_of(const imki_bands *bands, double significance)
  * look much alike in one record, and a ramp that is not there takes the walk's place: it must be
  * ten times less likely by chance than the other terms. Its estimate is assessed against slow
  * noise that is itself known from a few coefficients, so that the ratio follows Student's t with v
- * degrees, where v = 2 S^2/var S for the fitted spectrum at the lowest frequency. With Wallace's
- * normal approximation of t [WALLACE1959], z ~ (8v + 1)/(8v + 3) sqrt(v log(1 + t^2/v)):
- *
- *     2 gain = (v + 1) log(1 + t^2/v) ~ (v + 1)/v [(8v + 3)/(8v + 1)]^2 z^2 */
+ * degrees, those of the fitted spectrum at the lowest frequency. */
 static double ramp_penalty(const search *s)
 {
     imki_fit *fit = s->fit;
-    const size_t t = fit->templates;
-    double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX], variance = 0;
-    imki_fit_covariance(fit, s->bands, covariance);
-    for (size_t i = 0; i < t; i++)
-        for (size_t j = 0; j < t; j++)
-            if (fit->active[i] && fit->active[j])
-                variance += covariance[i * t + j] * fit->shape[i][0] * fit->shape[j][0];
-    const double spectrum = imki_fit_spectrum(fit, 0);
-    const double v = fmax(1, fmin(1e6, 2 * spectrum * spectrum / variance));
+    double slope[IMKI_TEMPLATES_MAX] = {0};
+    for (size_t i = 0; i < fit->templates; i++)
+        slope[i] = fit->active[i] ? fit->shape[i][0] : 0;
+    const double v = fmax(1, imki_fit_degrees(fit, s->bands, imki_fit_spectrum(fit, 0), slope));
     const double z = imk_normal_quantile(1 - 0.05 * s->penalties->significance);
-    const double ratio = (8 * v + 3) / (8 * v + 1);
-    return 0.5 * (v + 1) / v * ratio * ratio * z * z;
+    return 0.5 * imki_student_factor(v) * z * z;
 }
 
 static size_t count_of(const imki_amounts *set)
