@@ -13,6 +13,9 @@ enum { LEVELS_MIN = 64, BATCHES_MIN = 10, CYCLE_LEVELS = 256, CYCLE_LEVELS_MIN =
 /* More outliers than this share of the samples, or half as many samples that are nearly outliers,
  * are the noise itself. */
 static const double tail_share = 5e-3, tail_shoulder = 0.5;
+/* Of tails that go on evenly, the part beyond 5 standard deviations of most samples is smaller than
+ * that from 3.5 to 5: by 3 to 4 for Student's t of 5 degrees and Laplace's density. */
+static const double tail_normal = 4.65e-4, clustered_least = 8;
 
 static void count_saturated(imk_screen *f, const imki_ends *ends)
 {
@@ -80,7 +83,8 @@ static void find_tails(imk_screener *s)
     const double due = tail_shoulder * outliers + 3 + 2e-6 * present;
     f->heavy_tails =
         f->outliers.count > 0 && (outliers > tail_share * present || (double)s->shoulder > due);
-    f->nearly = s->shoulder;
+    const double evenly = s->far[0] - tail_normal * s->tail_samples;
+    f->clustered = s->far[1] >= clustered_least && s->far[1] > evenly;
     const double fast = s->fast_blocks > 0 ? sqrt(s->fast / s->fast_blocks) : 0;
     const double core = s->core_count > 0 ? 1.4826 * s->core_sum / s->core_count : 0;
     /* a sample is off the mean of 32, itself among them, by 31/32 of its variance */

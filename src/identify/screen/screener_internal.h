@@ -127,6 +127,8 @@ struct imk_screener {
     double scale_sum, threshold_sum, scale_count;
     size_t shoulder;             /* samples that are nearly outliers */
     double core_sum, core_count; /* median distances from the mean of 32 samples, of chunks */
+    double tail_samples, far[2]; /* of some chunks: from 3.5 to 5 standard deviations of most
+                                     samples, and beyond */
     imki_counting counting;
     double fast, fast_blocks;                     /* sum of the variances within blocks */
     imki_batches batches[2][IMKI_SCREEN_BATCHES]; /* with outliers, and without */

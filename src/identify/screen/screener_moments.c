@@ -145,6 +145,29 @@ void imki_screen_variances(imk_screener *s)
     }
 }
 
+static const double tail_begins = 3.5, tail_far = 5;
+
+/* Samples of the chunk that are far from the mean of their block, and very far, by the standard
+ * deviation of most. */
+static void count_tails(imk_screener *s, double core)
+{
+    for (size_t i = 0; i + BLOCK <= s->count[0]; i += BLOCK) {
+        const double *x = s->loose + i;
+        double sum = 0;
+        size_t far = 0, very_far = 0;
+        for (size_t k = 0; k < BLOCK; k++)
+            sum += x[k] - x[0];
+        const double mean = x[0] + sum / BLOCK;
+        for (size_t k = 0; k < BLOCK; k++) {
+            far += fabs(x[k] - mean) > tail_begins * core;
+            very_far += fabs(x[k] - mean) > tail_far * core;
+        }
+        s->tail_samples += mean == mean ? BLOCK : 0;
+        s->far[0] += (double)(far - very_far);
+        s->far[1] += (double)very_far;
+    }
+}
+
 /* Median distance of one sample of each block from the mean of the block. */
 void imki_screen_core(imk_screener *s)
 {
@@ -163,4 +186,5 @@ void imki_screen_core(imk_screener *s)
     imki_sort(distance, blocks);
     s->core_sum += distance[blocks / 2];
     s->core_count++;
+    count_tails(s, 1.4826 * distance[blocks / 2]);
 }

@@ -120,10 +120,13 @@ static void assess(imk_screener *s, const stretch *in, size_t i)
     const double distance = fabs(in->value[i] - level_around(in, i, &spread));
     if (!(distance > in->shoulder))
         return;
-    if (distance > in->threshold && distance > 9 * spread && distance > 6 * spread_beside(in, i))
-        note_outlier(s, s->place[i - in->margin], distance);
-    else if (distance <= in->threshold && distance > 5 * spread)
+    const bool near = distance <= in->threshold;
+    if (distance <= 5 * spread || (!near && distance <= 6 * spread_beside(in, i)))
+        return;
+    if (near || distance <= 9 * spread)
         s->shoulder++;
+    else
+        note_outlier(s, s->place[i - in->margin], distance);
 }
 
 static void assess_block(imk_screener *s, const stretch *in, size_t i)

@@ -238,13 +238,34 @@ static void test_tails(void **state)
     CHECK_CLOSE(s.core, 1, 0.02); /* a median of 3125, known to 1.3 % over the root of 12 */
 }
 
+/* Spikes of about 8 or 10 sigma are a cluster far off, although the threshold divides them. The
+ * tails of Laplace's density go on evenly. */
+static void test_clustered(void **state)
+{
+    (void)state;
+    static double more[N];
+    static uint32_t chance[N];
+    imk_random_normals(imk_random_seeded(18), 0, 0, N, more);
+    imk_random_words(imk_random_seeded(19), 0, 0, N, chance);
+    for (int size = 8; size <= 10; size += 2) {
+        make(17, 1, 0, 0);
+        for (size_t i = 0; i < N; i++)
+            rate[i] += chance[i] < 0.004 * 0x1p32 ? size + more[i] : 0;
+        const imk_screen s = pass(N, N, NULL);
+        assert_true(s.heavy_tails && s.clustered);
+    }
+    for (size_t i = 0; i < N; i++)
+        rate[i] = (chance[i] & 1 ? 1 : -1) * log((chance[i] + 0.5) * 0x1p-32);
+    const imk_screen s = pass(N, N, NULL);
+    assert_false(s.clustered);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_division),
-        cmocka_unit_test(test_jumps_and_holes),
-        cmocka_unit_test(test_clipped),
-        cmocka_unit_test(test_tails),
+        cmocka_unit_test(test_division),  cmocka_unit_test(test_jumps_and_holes),
+        cmocka_unit_test(test_clipped),   cmocka_unit_test(test_tails),
+        cmocka_unit_test(test_clustered),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

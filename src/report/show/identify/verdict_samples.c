@@ -24,7 +24,7 @@ static bool find_tails(const imk_identify_log *log, size_t channel, bool matter,
     const imk_term_display term =
         imk_channel_term(imk_even_record_column(&log->record, channel), IMK_NOISE_WHITE);
     /* Tails that go on evenly are those of the noise; a cluster far off may be faults. */
-    const bool matters = white->value * s->core < white->lower && s->nearly < s->outliers.count;
+    const bool matters = white->value * s->core < white->lower && s->clustered;
     imki_text_add(detail, "%zu samples; %s %.4g %s, of most samples %.4g", s->outliers.count,
                   term.name, white->value / term.unit.scale, term.unit.text,
                   white->value * s->core / term.unit.scale);
