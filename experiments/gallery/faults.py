@@ -408,6 +408,23 @@ def axis_late(record, rng, strength):
     last.values = np.roll(first.values, int(strength)) + 0.1 * (last.values - last.values.mean())
 
 
+def accel_leaks(record, rng, strength):
+    """`strength` times the noise of the first accelerometer is on the first gyro, by its size."""
+    gyro = next(c for c in record.columns if c.name.startswith("gyro"))
+    accel = next(c for c in record.columns if c.name.startswith("accel"))
+    scale = np.std(np.diff(gyro.values)) / np.std(np.diff(accel.values))
+    gyro.values += strength * scale * (accel.values - accel.values.mean())
+
+
+def packets_again(record, rng, strength):
+    """A share of the packets of ten rows are those before, written again."""
+    packet = np.arange(record.rows) // 10
+    again = rng.random(packet[-1] + 1) < strength
+    again[0] = False
+    for column in record.columns:
+        column.values = column.values[np.arange(record.rows) - 10 * again[packet]]
+
+
 # ---- units -----------------------------------------------------------------------------------
 
 
@@ -527,6 +544,10 @@ FAULTS = [
           "an axis is the mean of the two others"),
     Fault("axis_late", "10", "nb_30min", (1, 3, 8), "rows", axis_late,
           "an axis is another one, some rows later"),
+    Fault("accel_leaks", "10", "six_g", (0.4, 0.7, 1.5), "x", accel_leaks,
+          "the noise of an accelerometer is on a gyro"),
+    Fault("packets_again", "3", "nb_30min", (0.03, 0.05, 0.1), "share", packets_again,
+          "packets of ten rows are lost, those before written again"),
     Fault("lost_rows", "3", "six_g", (0.001, 0.01, 0.05), "share", lost_rows,
           "lost rows are written as zeros"),
     Fault("handled", "8", "six_g", (30, 300, 3000), "sigma", handled,

@@ -104,14 +104,19 @@ static const struct message {
      "{name}: {0.3g} % of the rows repeat the row before on all axes, so the sensor has {1.5g} Hz "
      "and the log {2.5g} Hz: all terms are wrong at short averaging times; log at the rate of the "
      "sensor, or keep new samples only"},
+    {"packets",
+     "{name}: {0.2g} % of the rows are the rows {1} before, written again on all axes, as a packet "
+     "of {1} rows in place of the next one: white noise comes out wrong; find out where rows are "
+     "written twice, and record again"},
     {"copy", "{name} has the values of {other} in every row: one of the two is a copy, so give the "
              "right columns with --columns"},
     {"follows", "the changes of {name} are those of {other}, times {0.4g}: two sensors have noise "
                 "of their own, so one of the two is computed from the other; leave it out"},
     {"correlated",
      "{name} and {other} share their noise, with a coherence of {0.2g} at most frequencies: axes "
-     "have noise of their own, unless one is computed from others, they talk across, or all feel "
-     "what the sensor stands on; the white noise is then not that of the axis"},
+     "have noise of their own, unless one is computed from others, they talk across, have a supply "
+     "in common, or all feel what the sensor stands on; the white noise is then not that of the "
+     "axis"},
     {"stamps:rate_differs", "--rate says {0.7g} Hz, but the time column {1.7g} Hz; --rate is used, "
                             "and every result follows from it: check which one is right"},
     /* record_spacing.c */

@@ -156,6 +156,34 @@ static void mix_axis(test_log *l, double axis)
         gyro[i] += 1.2 * l->gyro[(int)axis - 1][i - 3];
 }
 
+/* Three times the noise of the axes, of a structure that resonates at an eighth of the rate. */
+static void resonate(test_log *l, double strength)
+{
+    double near = 0, far = 0;
+    for (size_t i = 0; i < l->rows; i++) {
+        const double now = 2 * 0.96 * sqrt(0.5) * near - 0.96 * 0.96 * far + normal();
+        far = near;
+        near = now;
+        for (int c = 0; c < AXES; c++)
+            l->gyro[c][i] += strength * 0.28 * l->noise * sqrt(l->rate) * (c == 1 ? -now : now);
+    }
+}
+
+static void sound(test_log *l, double unused)
+{
+    (void)l;
+    (void)unused;
+}
+
+/* A tone on all axes. */
+static void hum(test_log *l, double frequency)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        for (int c = 0; c < AXES; c++)
+            l->gyro[c][i] += 3 * l->noise * sqrt(l->rate) *
+                             sin(2 * 3.141592653589793 * frequency * l->time[i] + c);
+}
+
 static void offset(test_log *l, double seconds)
 {
     for (size_t i = 0; i < l->rows; i++)
@@ -230,6 +258,15 @@ static void hold(test_log *l, double ratio)
     l->rate *= ratio;
 }
 
+/* The first rows of every twentieth packet are those of the packet before. */
+static void repeat_packets(test_log *l, double packet)
+{
+    const size_t n = (size_t)packet;
+    for (size_t i = 19 * n; i < l->rows; i++)
+        for (int c = 0; c < AXES && i / n % 20 == 19; c++)
+            l->gyro[c][i] = l->gyro[c][i - n];
+}
+
 /* Digits of a share of the noise. */
 static void round_values(test_log *l, double share)
 {
@@ -270,11 +307,12 @@ static const imk_finding *find(const imk_findings *findings, const char *code)
     return NULL;
 }
 
-/* Any doubt about the stamps? */
+/* Any doubt about the stamps, or about rows written again? */
 static const char *doubt_of(const imk_findings *findings)
 {
     for (size_t k = 0; k < findings->count; k++)
-        if (strncmp(findings->item[k].code, "stamps:", 7) == 0 &&
+        if ((strncmp(findings->item[k].code, "stamps:", 7) == 0 ||
+             strcmp(findings->item[k].code, "packets") == 0) &&
             findings->item[k].level == IMK_FINDING_WARNING)
             return findings->item[k].code;
     return NULL;
@@ -454,6 +492,19 @@ static void test_held_samples(void **context)
                        101.5, 1);
 }
 
+/* The number of rows in a packet, also where digits repeat by chance. */
+static void test_packets_written_again(void **context)
+{
+    (void)context;
+    static const double packets[] = {2, 5, 10, 64}, digits[] = {1e-6, 0.3, 1};
+    for (int p = 0; p < 4; p++)
+        for (int d = 0; d < 3; d++)
+            check_told(
+                "packets",
+                (fault[]){{round_values, digits[d]}, {repeat_packets, packets[p]}, {NULL, 0}},
+                packets[p], packets[p], 1);
+}
+
 static void test_a_stated_rate(void **context)
 {
     (void)context;
@@ -579,25 +630,25 @@ static void test_noise(void **context)
     check_noise((fault[]){{step_back, 5}, {NULL, 0}}, 5);
 }
 
-/* The verdict of held samples, of late rows, of a column given twice and of axes with one noise is
- * no all-clear, and begins with a short sentence. */
+/* The verdict of held samples, of late rows, of a column given twice, of axes with one noise and of
+ * packets written again is no all-clear, and begins with a short sentence. */
 static void test_verdict(void **context)
 {
     (void)context;
     static test_log l;
-    static const fault faults[][2] = {{{hold, 1.5}, {NULL, 0}},
-                                      {{burst, 100}, {NULL, 0}},
-                                      {{copy_axis, 2}, {NULL, 0}},
-                                      {{follow_axis, 2}, {NULL, 0}},
-                                      {{mix_axis, 2}, {NULL, 0}}};
-    static const char *const codes[] = {"held", "late", "copy", "follows", "correlated"};
+    static const fault faults[][2] = {
+        {{hold, 1.5}, {NULL, 0}},    {{burst, 100}, {NULL, 0}},
+        {{copy_axis, 2}, {NULL, 0}}, {{follow_axis, 2}, {NULL, 0}},
+        {{mix_axis, 2}, {NULL, 0}},  {{repeat_packets, 5}, {NULL, 0}}};
+    static const char *const codes[] = {"held", "late", "copy", "follows", "correlated", "packets"};
     static const char *const sentences[] = {
         "Usable with care: rows repeat the samples of a slower sensor",
         "Usable with care: rows are stamped late",
         "Usable with care: a column is the copy of another",
         "Usable with care: a column is computed from another",
-        "Usable with care: axes share their noise"};
-    for (int k = 0; k < 5; k++) {
+        "Usable with care: axes share their noise",
+        "Usable with care: rows are written twice in place of others"};
+    for (int k = 0; k < 6; k++) {
         imk_array_source memory;
         imk_identify_log *found;
         imk_error error;
@@ -616,6 +667,34 @@ static void test_verdict(void **context)
         const char *sentence = imk_identify_sentence(&verdict);
         assert_memory_equal(sentence, sentences[k], strlen(sentences[k]));
         imk_result_free(result);
+        imk_identify_log_free(found);
+    }
+}
+
+/* An accelerometer that follows a gyro is told; what all axes feel at some frequencies is not. */
+static void test_noise_of_both_sensors(void **context)
+{
+    (void)context;
+    static test_log l;
+    static const char *const names[] = {"time", "gyro_x", "gyro_y", "accel_z"};
+    static const fault faults[] = {{sound, 0}, {hum, 7}, {resonate, 3}, {mix_axis, 2}};
+    for (int k = 0; k < 4; k++) {
+        imk_array_source memory;
+        imk_record_source source;
+        imk_identify_log *found;
+        imk_error error;
+        const imk_identify_log_settings settings = imk_identify_log_default();
+        make(&l, 11, ROWS, 100);
+        faults[k].make(&l, faults[k].strength);
+        const double *const data[] = {l.time, l.gyro[0], l.gyro[1], l.gyro[2]};
+        CHECK_OK(imk_array_source_make(4, names, data, l.rows, 0, &memory, &source, &error));
+        CHECK_OK(imk_identify_log_run(&source, &settings, NULL, &found, &error));
+        const imk_finding *told = find(&found->findings, "correlated");
+        assert_int_equal(told != NULL, k == 3);
+        if (told) {
+            assert_int_equal(told->level, IMK_FINDING_WARNING);
+            assert_string_equal(told->name, "accel_z\tgyro_y");
+        }
         imk_identify_log_free(found);
     }
 }
@@ -662,11 +741,13 @@ int main(void)
         cmocka_unit_test(test_two_rates),
         cmocka_unit_test(test_doubled_rows),
         cmocka_unit_test(test_held_samples),
+        cmocka_unit_test(test_packets_written_again),
         cmocka_unit_test(test_a_stated_rate),
         cmocka_unit_test(test_no_rate),
         cmocka_unit_test(test_why_there_is_no_rate),
         cmocka_unit_test(test_noise),
         cmocka_unit_test(test_verdict),
+        cmocka_unit_test(test_noise_of_both_sensors),
         cmocka_unit_test(test_long_record),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,23 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Noise that the axes of one sensor share. */
+/* Noise that axes share. */
 #ifndef IMUKI_LOG_COHERENCE_INTERNAL_H
 #define IMUKI_LOG_COHERENCE_INTERNAL_H
 
 #include "imukit/job.h"
 #include "imukit/record.h"
 
-enum { IMKI_COHERENT_AXES = 8, IMKI_COHERENT_BANDS = 31 };
+enum { IMKI_COHERENT_AXES = 12, IMKI_COHERENT_BANDS = 31 };
 
-/* Sums over segments of a sensor: spectra, and the cross spectra of two axes, the earlier first. */
-typedef struct imki_coherent_axes {
+/* Sums over segments: spectra of the axes, and the cross spectra of two, the earlier first. A
+ * segment counts for the axes that have samples in it. */
+typedef struct imki_coherence {
     int column[IMKI_COHERENT_AXES];
     size_t axes, rows;
-    double segments, power[IMKI_COHERENT_AXES][IMKI_COHERENT_BANDS];
-    double cross[IMKI_COHERENT_AXES * (IMKI_COHERENT_AXES - 1) / 2][IMKI_COHERENT_BANDS][2];
-} imki_coherent_axes;
-
-typedef struct imki_coherence {
-    imki_coherent_axes sensor[2]; /* gyros, accelerometers */
+    double segments[IMKI_COHERENT_AXES], power[IMKI_COHERENT_AXES][IMKI_COHERENT_BANDS];
+    struct {
+        double segments, cross[IMKI_COHERENT_BANDS][2];
+    } pair[IMKI_COHERENT_AXES * (IMKI_COHERENT_AXES - 1) / 2];
 } imki_coherence;
 
 /* Begin with the channels that are analysed. */

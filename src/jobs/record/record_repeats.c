@@ -109,6 +109,7 @@ static void add_products(imki_repeat_counts *s, size_t rows, double *const *colu
 static void add_rows(imki_repeat_counts *s, size_t rows, double *const *columns, size_t first)
 {
     compare_channels(s, rows, columns, first);
+    imki_packets_add(&s->packets, s->channels, s->column, rows, columns, first);
     if (s->rows > MANY && s->stretches++ % EVERY != 0)
         return;
     if (s->rows <= MANY)
@@ -239,7 +240,9 @@ void imki_repeats_tell(const imki_repeats *r, const imk_log_column *columns, dou
                        imk_findings *findings)
 {
     for (int k = 0; k < 2; k++) {
-        tell_sensor(&r->sensor[k], k == 1 ? "accel" : r->others ? "columns" : "gyro", dt, findings);
+        const char *name = k == 1 ? "accel" : r->others ? "columns" : "gyro";
+        tell_sensor(&r->sensor[k], name, dt, findings);
+        imki_packets_tell(&r->sensor[k].packets, name, findings);
         tell_copies(&r->sensor[k], columns, findings);
     }
 }

@@ -130,8 +130,9 @@ void imki_verdict_noise_changes(imk_verdict *v, const imk_identify_log *log)
          ": the noise comes in bursts, as from vibration or interference that comes and goes; the "
          "values are means over the bursts."},
         {IMK_FINDING_NOTE, "gaussian",
-         ": the white noise has heavier tails than Gaussian noise, all the time; its strength "
-         "holds, and its interval allows for the tails."}};
+         ": the white noise has heavier tails than Gaussian noise, in every part of the log; its "
+         "strength is that of all samples together, and its interval allows for the tails. If a "
+         "program made single samples noisier or weaker, that of the sensor differs."}};
     for (int about = 0; about < SUBJECTS; about++) {
         imki_text list = {.bytes = NULL};
         uint64_t channels = 0;

@@ -78,6 +78,7 @@ static const struct words {
     {"unknown_channels", "no column is read as one of a gyro or an accelerometer", NULL},
     {"gyro_size", "the numbers of %s are no gyro's at rest: a wrong unit, or the sensor turned",
      "Numbers that no gyro at rest has: %s."},
+    {"packets", "rows are written twice in place of others", NULL},
     {"copy", "a column is the copy of another", NULL},
     {"follows", "a column is computed from another", NULL},
     {"correlated", "axes share their noise", NULL},

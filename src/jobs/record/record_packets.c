@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Are packets of rows written again, in place of the next ones?
+ *
+ * A packet of L rows that is written twice is a run of L rows whose channels all equal those of the
+ * row L before. Coarse digits repeat rows by chance, but hardly so many in a row: of independent
+ * rows, of which the share p repeats the row L before, L p^L are in such runs. Rows that repeat the
+ * row directly before are told by others. */
+#include "record_packets_internal.h"
+
+#include "jobs/job_internal.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+enum {
+    LAGS = IMKI_PACKET_LAGS,
+    LEAST = 2, /* lag; channels of a sensor */
+    ROWS = 2048,
+    EARLY = 32, /* stretches that are all counted; later one of so many */
+    ROWS_LEAST = 1024
+};
+
+/* Share of the rows written again that is told. */
+static const double told = 0.015;
+
+/* One number for the values of a row. Those of missing samples are all different. */
+static void number_rows(size_t channels, const int *column, size_t rows, double *const *columns,
+                        size_t first, uint32_t *number)
+{
+    uint64_t key[ROWS] = {0};
+    for (size_t c = 0; c < channels; c++)
+        for (size_t i = 0; i < rows; i++) {
+            uint64_t bits;
+            const double x = columns[column[c]][first + i];
+            memcpy(&bits, &x, sizeof bits);
+            key[i] = ((key[i] ^ bits) + (x == x ? 0 : i + 1)) * 0x9e3779b97f4a7c15;
+            key[i] ^= key[i] >> 29;
+        }
+    for (size_t i = 0; i < rows; i++)
+        number[i] = (uint32_t)(key[i] >> 32);
+}
+
+static size_t count_equal(size_t rows, const uint32_t *number, size_t lag)
+{
+    uint32_t count = 0;
+    for (size_t i = LAGS; i < rows; i++)
+        count += number[i] == number[i - lag];
+    return count;
+}
+
+/* Rows in runs of at least `lag`, most of which are not those of a value that is held. */
+static size_t count_again(size_t rows, const uint32_t *number, size_t lag)
+{
+    size_t count = 0, run = 0, changes = 0;
+    for (size_t i = LAGS; i < rows; i++) {
+        const bool equal = number[i] == number[i - lag];
+        run = equal ? run + 1 : 0;
+        changes = equal ? changes + (number[i] != number[i - 1]) : 0;
+        if (run >= lag && 2 * changes > run)
+            count += run == lag ? lag : 1;
+    }
+    return count;
+}
+
+void imki_packets_add(imki_packets *packets, size_t channels, const int *column, size_t rows,
+                      double *const *columns, size_t first)
+{
+    uint32_t number[ROWS];
+    const size_t stretch = packets->stretches++;
+    if (channels < LEAST || rows <= LAGS || (stretch >= EARLY && stretch % EARLY != 0))
+        return;
+    number_rows(channels, column, rows, columns, first, number);
+    for (size_t lag = LEAST; lag <= LAGS; lag++) {
+        const size_t equal = count_equal(rows, number, lag);
+        packets->equal[lag] += equal;
+        packets->again[lag] += equal < lag ? 0 : count_again(rows, number, lag);
+    }
+    packets->rows += rows - LAGS;
+}
+
+/* Share of equal rows that at most one lag in four exceeds: of a tone, at lags in phase with it. */
+static double upper_quarter(const imki_packets *packets)
+{
+    size_t least = packets->rows;
+    for (size_t lag = LEAST; lag <= LAGS; lag++) {
+        size_t beyond = 0;
+        for (size_t other = LEAST; other <= LAGS; other++)
+            beyond += packets->equal[other] > packets->equal[lag];
+        if (beyond <= LAGS / 4 && packets->equal[lag] < least)
+            least = packets->equal[lag];
+    }
+    return (double)least / (double)packets->rows;
+}
+
+void imki_packets_tell(const imki_packets *packets, const char *name, imk_findings *findings)
+{
+    size_t most = LEAST;
+    for (size_t lag = LEAST; lag <= LAGS; lag++)
+        most = packets->again[lag] > packets->again[most] ? lag : most;
+    if (packets->rows < ROWS_LEAST)
+        return;
+    const double share = (double)packets->again[most] / (double)packets->rows;
+    const double by_chance = (double)most * pow(upper_quarter(packets), (double)most);
+    if (share > told + 3 * by_chance)
+        imki_find(findings, IMK_FINDING_WARNING, "packets", name,
+                  IMKI_NUMBERS(100 * share, (double)most));
+}
