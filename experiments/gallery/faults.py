@@ -92,6 +92,35 @@ def clip(lower, upper):
     return apply
 
 
+def saturates_softly(record, rng, strength):
+    """A stage of which the output is s tanh(x/s), s = `strength` sigma."""
+    for column in record.columns:
+        middle, scale = np.nanmedian(column.values), strength * sigma_of(record, column)
+        column.values = middle + scale * np.tanh((column.values - middle) / scale)
+
+
+def despiked(record, rng, strength):
+    """A filter in the driver that takes what is `strength` sigma from the median of seven for a
+    spike, and puts the median there."""
+    for column in record.columns:
+        padded = np.pad(column.values, 3, mode="edge")
+        windows = np.lib.stride_tricks.sliding_window_view(padded, 7)
+        median = np.median(windows, axis=1)
+        spread = 1.4826 * np.median(np.abs(windows - median[:, None]), axis=1)
+        far = np.abs(column.values - median) > strength * spread
+        column.values = np.where(far, median, column.values)
+
+
+def zeroed(record, rng, strength):
+    """The mean of each stretch of `strength` seconds becomes that of the log."""
+    length = int(strength / record.dt)
+    for column in record.columns:
+        whole = column.values.mean()
+        for first in range(0, record.rows, length):
+            part = column.values[first:first + length]
+            part += whole - part.mean()
+
+
 def drop_by_value(record, rng, strength):
     """A driver that drops the rows in which the first channel is beyond `strength` sigma."""
     column = record.columns[0]
@@ -501,6 +530,12 @@ FAULTS = [
           "clipped on both sides"),
     Fault("clip_above", "4", "nb_30min", (3, 2.5, 2), "sigma", clip(False, True),
           "clipped on one side"),
+    Fault("saturates_softly", "4", "nb_30min", (4, 3, 2), "sigma", saturates_softly,
+          "a stage that saturates softly"),
+    Fault("despiked", "4", "nb_30min", (3, 2.5, 2), "sigma", despiked,
+          "a filter that replaces spikes by a median"),
+    Fault("zeroed", "8", "nb_30min", (60, 20, 5), "s", zeroed,
+          "an automatic zero, which takes the slow noise away"),
     Fault("drop_by_value", "4", "nb_30min", (3, 2.5, 2), "sigma", drop_by_value,
           "rows dropped because of their value"),
     Fault("jump", "8", "nb_30min", (3, 6, 30), "B", jumps(1), "the level jumps once"),

@@ -63,6 +63,15 @@ enum {
 /** Bits of imk_identification.ambiguous and .instead: 1 << a term of imk_noise_term, and this. */
 enum { IMK_AMBIGUOUS_GAUSS_MARKOV = 1 << IMK_NOISE_TERMS };
 
+/** Power of the lowest coefficients of the cosine spectrum. */
+typedef struct imk_level_sum {
+    double degrees; /**< coefficients; 0: none */
+    double power;   /**< sum of their powers, each over the model's */
+    double period;  /**< shortest period among them [s] */
+} imk_level_sum;
+
+enum { IMK_LEVEL_SUMS = 10 };
+
 /** Result for one channel. Values are in the channel's unit. */
 typedef struct imk_identification {
     imk_estimate term[IMK_NOISE_TERMS];
@@ -90,7 +99,9 @@ typedef struct imk_identification {
     size_t missing;     /**< missing samples between the first and the last sample present */
     double largest_gap; /**< longest run of missing samples [s] */
     int rounds; /**< iterations between missing samples and spectrum; 0: no sample is missing */
-    unsigned verdict;   /**< IMK_VERDICT_… bits */
+    imk_level_sum level[IMK_LEVEL_SUMS]; /**< of the lowest 8, 16, 32, … coefficients; degrees 0
+                                            where there are no more, and in a joint estimate */
+    unsigned verdict;                    /**< IMK_VERDICT_… bits */
     unsigned ambiguous; /**< terms called present without which other terms explain the record about
                            as well; their intervals begin at 0. Intervals hold either way */
     unsigned instead;   /**< terms, not called present, that may be there in their place */
@@ -126,6 +137,12 @@ IMK_API size_t imk_identify_workspace_size(size_t n);
 IMK_API imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
                                         const double *samples, imk_identification *result,
                                         void *workspace, size_t workspace_size, imk_error *error);
+
+/** Do channels of independent noise hold less power at the lowest frequencies than their models, as
+ *  behind a high-pass filter or an automatic zero? False alarms: one log of six channels in 10000,
+ *  if each is tested.
+ *  @return  the sum over the channels that is least probable; degrees 0: none is low */
+IMK_API imk_level_sum imk_level_loss(size_t count, const imk_identification *const *channels);
 
 /** Expected Allan variance of the identified model at tau = m dt, exact for the sampled process
  *  [unit^2].

@@ -96,8 +96,10 @@ typedef struct imk_noise_changes {
                       */
     double kurtosis_sigma; /**< its standard deviation for Gaussian noise */
     bool heavy_tails;      /**< the kurtosis is larger than Gaussian noise makes it */
-    double scatter; /**< variance of the white noise's strength from block to block, over that
-                       of noise that does not change and has this kurtosis; 1 when not tested */
+    bool light_tails; /**< it is smaller than Gaussian noise, rounding, tones and resonances make
+                         it, and by so much that white noise is some 1.5 % too low */
+    double scatter;   /**< variance of the white noise's strength from block to block, over that
+                         of noise that does not change and has this kurtosis; 1 when not tested */
     size_t scatter_octave; /**< octave in which it is largest */
     bool bursts;           /**< that scatter is too large: the noise comes in bursts */
 } imk_noise_changes;

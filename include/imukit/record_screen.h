@@ -72,6 +72,8 @@ typedef struct imk_screen {
     double straight;     /**< the same of samples that are the mean of their neighbours */
     double gap; /**< widest gap among the values, as a stuck bit of the converter leaves it; 0: none
                    of more than a third of the noise */
+    bool uneven; /**< frequent values are at uneven distances, or unevenly frequent, as where the
+                    output is rounded twice; this changes the distribution of the noise */
     imk_screen_count stuck; /**< samples in runs of one value that are longer than the noise allows,
                                without the first sample of each run */
     size_t longest_stuck;   /**< samples in the longest run */

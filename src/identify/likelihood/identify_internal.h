@@ -292,6 +292,9 @@ void imki_identify_terms(imki_work *w, imk_identification *result);
 void imki_identify_intervals(imki_work *w, imk_identification *result);
 void imki_identify_assess(imki_work *w, imk_identification *result);
 
+/* identify_level.c: compares the lowest frequencies with the fit. */
+void imki_identify_level(imki_work *w, imk_identification *result);
+
 /* identify_agreement.c: the longest range of tau [s] over which measured deviations agree with the
  * model of the result; infinite `from` when there is none. */
 void imki_agreement(const imki_work *w, const imk_identification *result, size_t count,

@@ -157,6 +157,7 @@ void imki_identify_intervals(imki_work *w, imk_identification *result)
 {
     const double drop = 0.5 * imk_chi_square_quantile(w->settings->confidence, 1);
     store_values(w, result);
+    imki_identify_level(w, result);
     for (int term = 0; term < IMK_NOISE_TERMS; term++)
         store_interval(w, result, term, drop);
     store_gauss_markovs(w, result, drop);

@@ -183,6 +183,21 @@ static double widest_gap(const imk_screener *s, size_t values)
     return widest;
 }
 
+/* Is a value missing between two frequent ones, or are their numbers uneven? Rounding twice, first
+ * to wider steps, skips values; first to smaller ones, it puts two into one. */
+static bool is_uneven(const imk_screener *s, size_t values)
+{
+    static const double wider = 1.5, square_least = 0.02;
+    const double frequent = candidate_share * (double)s->count[0];
+    double least = HUGE_VAL, most = 0;
+    for (size_t k = 1; k < values; k++)
+        if (number_of(s, k - 1) >= frequent && number_of(s, k) >= frequent) {
+            least = fmin(least, value_of(s, k) - value_of(s, k - 1));
+            most = fmax(most, value_of(s, k) - value_of(s, k - 1));
+        }
+    return most > wider * least || s->frequent.uneven > square_least;
+}
+
 void imki_screen_frequent(imk_screener *s)
 {
     imki_frequent *f = &s->frequent;
@@ -190,6 +205,7 @@ void imki_screen_frequent(imk_screener *s)
         const size_t values = sort_values(s);
         f->looked = true;
         find_candidate(s, values);
+        s->found.uneven = is_uneven(s, values);
         s->found.gap = f->candidate && f->alone ? 0 : widest_gap(s, values);
     }
     if (!f->candidate || !imki_screen_counts(s->chunk))

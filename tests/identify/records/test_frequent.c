@@ -104,7 +104,21 @@ static void test_sound(void **state)
             round_to(steps[k]);
             const imk_screen found = screen();
             assert_true(is_sound(&found));
+            assert_true(kind >= 2 || !found.uneven);
         }
+}
+
+/* Rounded to steps of 0.35 and then to the nearest of 0.3, which skips every seventh, or first to
+ * steps of 0.2, of which two come to every second one. */
+static void test_uneven(void **state)
+{
+    (void)state;
+    for (int wide = 0; wide < 2; wide++) {
+        make(30, 0.17, 0, 0.003);
+        round_to(wide ? 0.35 : 0.2);
+        round_to(0.3);
+        assert_true(screen().uneven);
+    }
 }
 
 int main(void)
@@ -113,6 +127,7 @@ int main(void)
         cmocka_unit_test(test_filled), cmocka_unit_test(test_beside),
         cmocka_unit_test(test_serial), cmocka_unit_test(test_increments),
         cmocka_unit_test(test_gap),    cmocka_unit_test(test_sound),
+        cmocka_unit_test(test_uneven),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

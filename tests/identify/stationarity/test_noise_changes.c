@@ -75,6 +75,7 @@ static void test_sound(void **state)
         make(run, s[0], s[1]);
         find(&model);
         alarms += changes.changed != 0 || changes.bursts || changes.heavy_tails;
+        assert_false(changes.light_tails);
         assert_int_equal(changes.changed != 0, changes.segment_count > 1);
     }
     assert_in_range(alarms, 0, 5);
@@ -261,6 +262,26 @@ static void test_tails(void **state)
                    after->sigma / before.sigma, 1e-9);
 }
 
+/* Where a stage saturates softly, y = 3 tanh(x/3), tails are light: by quadrature over x, excess
+ * kurtosis -0.54. Rounding to steps of a standard deviation has -0.6 (1/13)^2 * 2 = -0.007. */
+static void test_light_tails(void **state)
+{
+    (void)state;
+    imk_identification model = model_of(1, 0.3, 0);
+    make(107, 0.3, 0);
+    for (size_t i = 0; i < N; i++)
+        white[i] = 30 * tanh(white[i] / 30);
+    find(&model);
+    assert_true(changes.gaussian_tested && changes.light_tails && !changes.heavy_tails);
+    CHECK_CLOSE(changes.kurtosis, -0.54, 0.15);
+    make(108, 0.3, 0);
+    for (size_t i = 0; i < N; i++)
+        white[i] = 10 * floor(white[i] / 10 + 0.5);
+    model.resolution = 10;
+    find(&model);
+    assert_true(changes.gaussian_tested && !changes.light_tails);
+}
+
 static void test_refusals(void **state)
 {
     (void)state;
@@ -289,6 +310,7 @@ int main(void)
         cmocka_unit_test(test_flicker), cmocka_unit_test(test_weak_flicker),
         cmocka_unit_test(test_band),    cmocka_unit_test(test_tone),
         cmocka_unit_test(test_bursts),  cmocka_unit_test(test_short_bursts),
-        cmocka_unit_test(test_tails),   cmocka_unit_test(test_refusals)};
+        cmocka_unit_test(test_tails),   cmocka_unit_test(test_light_tails),
+        cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -233,6 +233,7 @@ void imki_noise_changes_data(const imk_identify_log *log, size_t channel, imk_un
     imk_result_number(result, "kurtosis_sigma",
                       c->gaussian_tested ? c->kurtosis_sigma : (double)NAN);
     imk_result_flag(result, "heavy_tails", c->heavy_tails);
+    imk_result_flag(result, "light_tails", c->light_tails);
     imk_result_flag(result, "bursts", c->bursts);
     imk_result_number(result, "scatter", c->scatter);
     map_data(log, channel, unit, result);

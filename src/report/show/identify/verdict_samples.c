@@ -205,17 +205,39 @@ static bool find_walk(const imk_identify_log *log, size_t channel, imki_text *de
 
 /* Samples are missing, and the white noise has shorter tails than Gaussian noise: those far from
  * the level are not there. Tones and coarse steps shorten the tails, too. */
-static bool find_dropped(const imk_identify_log *log, size_t channel, imki_text *detail)
+static bool is_dropped(const imk_identify_log *log, size_t channel)
 {
     const double by_chance = 5, share_least = 1e-3;
     const imk_noise_changes *c = &log->changes[channel];
     const imk_identification *r = &log->result[channel];
     const double missing = (double)log->screen[channel].missing.count / (double)log->record.rows;
-    imki_text_add(detail, "%.3g %% missing, excess kurtosis %.2g, Gaussian 0 within %.1g",
-                  100 * missing, c->kurtosis, 2 * c->kurtosis_sigma);
     return missing > share_least && log->map[channel] &&
            c->kurtosis < -by_chance * c->kurtosis_sigma && r->sinusoid_count == 0 &&
            r->resonance_count == 0 && r->resolution < 0.5 * r->deviation;
+}
+
+static void put_kurtosis(const imk_noise_changes *c, imki_text *detail)
+{
+    imki_text_add(detail, "excess kurtosis %.2g, Gaussian 0 within %.1g", c->kurtosis,
+                  2 * c->kurtosis_sigma);
+}
+
+static bool find_dropped(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const double missing = (double)log->screen[channel].missing.count / (double)log->record.rows;
+    imki_text_add(detail, "%.3g %% missing, ", 100 * missing);
+    put_kurtosis(&log->changes[channel], detail);
+    return is_dropped(log, channel);
+}
+
+/* Lighter tails than the noise has, and nothing that was found made them: samples at the end of the
+ * range are allowed for, and where the output is rounded twice, the noise is right. */
+static bool find_light_tails(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_noise_changes *c = &log->changes[channel];
+    put_kurtosis(c, detail);
+    return log->map[channel] && c->light_tails && !is_dropped(log, channel) &&
+           log->screen[channel].saturated.count == 0 && !log->screen[channel].uneven;
 }
 
 /* What is looked for, and what it means, in the order in which it is told. */
@@ -290,6 +312,11 @@ static const imki_concern concerns[] = {
     {0, find_dropped, 0, IMK_FINDING_WARNING, "dropped",
      "the samples far from the level are missing, as if a program had dropped what is out of a "
      "range; the white noise is too low; log every sample, or widen the range",
+     NULL},
+    {0, find_light_tails, 0, IMK_FINDING_WARNING, "light_tails",
+     "the noise has lighter tails than noise has, as behind a stage that saturates softly or a "
+     "filter that removes spikes; the white noise is too low; log without the filter, or with less "
+     "gain",
      NULL},
 };
 

@@ -31,6 +31,32 @@ static bool find_validity(const imk_identify_log *log, size_t channel, imki_text
     return true;
 }
 
+/* A warm-up or an effect of temperature that was subtracted took slow noise with it. */
+static bool has_level(const imk_identify_log *log, size_t channel)
+{
+    const imk_screen *s = &log->screen[channel];
+    return !s->warm_up && s->temperature_degree == 0;
+}
+
+/* Power that is missing at the lowest frequencies of a channel; or of all together, and of it. */
+static bool find_held(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const double loss = 0.3;
+    const imk_identification *together[IMK_LOG_COLUMNS_MAX], *r = &log->result[channel];
+    size_t count = 0;
+    for (size_t c = 0; c < log->record.count && count < IMK_LOG_COLUMNS_MAX; c++)
+        if (has_level(log, c))
+            together[count++] = &log->result[c];
+    imk_level_sum low = imk_level_loss(1, &r), all = imk_level_loss(count, together);
+    for (size_t k = 0; low.degrees == 0 && k < IMK_LEVEL_SUMS; k++)
+        if (all.degrees > 0 && fabs(r->level[k].period - all.period) < 0.1 * all.period &&
+            r->level[k].power < (1 - loss) * r->level[k].degrees)
+            low = r->level[k];
+    imki_text_add(detail, "periods above %.2g s hold %.2g of the model's power", low.period,
+                  low.power / low.degrees);
+    return has_level(log, channel) && low.degrees > 0;
+}
+
 static bool find_lines(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_identification *r = &log->result[channel];
@@ -201,6 +227,10 @@ static const imki_concern concerns[] = {
     {IMK_VERDICT_MISFIT, find_validity, 0, IMK_FINDING_WARNING, "misfit",
      "the model explains the record only over these averaging times; the log also contains "
      "something else (vibration, filtering, another process)",
+     NULL},
+    {0, find_held, 0, IMK_FINDING_WARNING, "level_held",
+     "the level moves less than the rest of the noise tells, as behind a high-pass filter or an "
+     "automatic zero: bias instability and random walk cannot be seen; log without it",
      NULL},
     {IMK_VERDICT_LINES, find_lines, 0, IMK_FINDING_NOTE, "lines",
      "spectral lines, from vibration or interference, are modelled separately as sinusoids", NULL},

@@ -59,6 +59,14 @@ static const struct words {
     {"bursts", "the noise of %s comes in bursts", "Noise in bursts: %s."},
     {"heavy_tails", "samples far off may be noise or faults in %s",
      "Many samples far off, kept as noise: %s."},
+    {"light_tails",
+     "the noise of %s has lighter tails than noise has, as behind a stage that saturates softly or "
+     "a filter that removes spikes, so that the white noise is too low",
+     "Lighter tails than noise has: %s."},
+    {"level_held",
+     "the level of %s moves less than the rest of the noise tells, as behind a high-pass filter or "
+     "an automatic zero, so that slow terms are missing",
+     "A level that moves too little: %s."},
     {"undetermined", "a term of %s can take the place of another",
      "Terms that can replace each other: %s."},
     {"stamps:unordered", "rows whose time does not increase are left out", NULL},
