@@ -32,12 +32,20 @@ static const double least_information = 1e-6;
 static const double largest_correction = 1.0;
 
 typedef struct information {
-    int parts, index[IMKI_PARTS];      /* of a part in F; -1: not estimated */
-    double f[IMKI_PARTS * IMKI_PARTS]; /* then its inverse */
-    double share[IMKI_PARTS][IMK_CORRELATED_MAX];
-    double more[IMK_CORRELATED_MAX]; /* sum of F^-1 phi phi c c R */
+    int parts, index[IMKI_PARTS];        /* of a part in F; -1: not estimated */
+    double *f;                           /* then its inverse */
+    double *vector;                      /* eigenvectors of F */
+    double (*share)[IMK_CORRELATED_MAX]; /* of a part in the variances */
+    double more[IMK_CORRELATED_MAX];     /* sum of F^-1 phi phi c c R */
     bool inverted;
 } information;
+
+enum { INFORMATION = 2 * IMKI_PARTS * IMKI_PARTS + IMKI_PARTS * IMK_CORRELATED_MAX };
+
+size_t imki_freedoms_room(void)
+{
+    return INFORMATION;
+}
 
 static void matrix_vector(size_t n, const double *a, const double *x, double *out)
 {
@@ -169,10 +177,11 @@ static double widened(const imki_fit *fit, int part)
 
 static imk_status invert(information *f)
 {
-    double value[IMKI_PARTS], vector[IMKI_PARTS * IMKI_PARTS];
+    double value[IMKI_PARTS];
+    const double *vector = f->vector;
     const int n = f->parts;
-    const imk_status status = imk_symmetric_eigen((size_t)n, f->f, value, vector);
-    memset(f->f, 0, sizeof f->f);
+    const imk_status status = imk_symmetric_eigen((size_t)n, f->f, value, f->vector);
+    memset(f->f, 0, (size_t)(n * n) * sizeof *f->f);
     for (int k = 0; status == IMK_OK && k < n; k++) {
         const double scale = 1.0 / fmax(value[k], least_information * value[n - 1]);
         for (int i = 0; i < n; i++)
@@ -185,7 +194,10 @@ static imk_status invert(information *f)
 
 void imki_freedoms(imki_estimator *e, const imki_fit *fit, double *variance, double *freedom)
 {
-    information f = {0};
+    information f = {.f = e->information};
+    memset(e->information, 0, INFORMATION * sizeof *e->information);
+    f.vector = f.f + IMKI_PARTS * IMKI_PARTS;
+    f.share = (double(*)[IMK_CORRELATED_MAX])(f.vector + IMKI_PARTS * IMKI_PARTS);
     for (int part = 0; part < IMKI_PARTS; part++)
         f.index[part] = fit->estimated[part] ? f.parts++ : -1;
     if (f.parts > 0) {

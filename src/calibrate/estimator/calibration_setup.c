@@ -85,6 +85,7 @@ static void lay_out(imki_estimator *e, const imk_calibration *c, imki_parts *a)
     e->seen = imki_take(a, 2 * IMKI_ROWS_MAX * globals * number);
     e->moved = imki_take(a, 2 * IMKI_ROWS_MAX * globals * number);
     e->squares = imki_take(a, IMKI_PARTS * globals * globals * number);
+    e->information = imki_take(a, imki_freedoms_room() * number);
     e->distance = imki_take(a, IMKI_GROUPS * (n + m) * number);
     e->sorted = imki_take(a, (n + m) * number);
     e->state = imki_take(a, n + m);

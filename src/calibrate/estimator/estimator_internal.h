@@ -118,11 +118,12 @@ typedef struct imki_estimator {
     double *best_weight; /* per item */
     imki_normal normal;
     imki_slow_noise slow;
-    imki_row *row;    /* 2 IMKI_ROWS_MAX */
-    double *seen;     /* of each of them, what the globals see */
-    double *moved;    /* ... times their covariance */
-    double *squares;  /* IMKI_PARTS globals^2 */
-    double *distance; /* per item and group of three: see statistics */
+    imki_row *row;       /* 2 IMKI_ROWS_MAX */
+    double *seen;        /* of each of them, what the globals see */
+    double *moved;       /* ... times their covariance */
+    double *squares;     /* IMKI_PARTS globals^2 */
+    double *information; /* of the factors: imki_freedoms_room() */
+    double *distance;    /* per item and group of three: see statistics */
     double *sorted;
     unsigned char *state; /* per item */
     imk_calibration_result *result;
@@ -273,6 +274,8 @@ imk_status imki_variance_factors(imki_estimator *e, double tolerance, imki_fit *
 /* ---- calibration_freedom.c: variances of the parameters, with what the factors' errors add, and
  * their degrees of freedom ---- */
 void imki_freedoms(imki_estimator *e, const imki_fit *fit, double *variance, double *freedom);
+/* Doubles that it needs. */
+size_t imki_freedoms_room(void);
 
 /* ---- calibration_slow_noise.c: noise that observations of one record share; does nothing when the
  * model states none ---- */
