@@ -193,13 +193,18 @@ static void allow_for(imk_findings *findings)
                 findings->item[k].level = IMK_FINDING_NOTE;
 }
 
-static void tell_coherence(imk_identify_log *log)
+static imk_status tell_coherence(imk_identify_log *log, const imk_job *job, imk_error *error)
 {
     const imk_even_record *record = &log->record;
-    imki_coherence coherence;
-    imki_coherence_start(&coherence, record->count, record->column, record->log.column);
-    imki_coherence_add(&coherence, record->rows, record->log.data);
-    imki_coherence_tell(&coherence, record->log.column, &log->findings);
+    imki_arena scratch = {.allocator = job->allocator};
+    imki_coherence *coherence = imki_arena_take(&scratch, sizeof *coherence);
+    if (!coherence)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    imki_coherence_start(coherence, record->count, record->column, record->log.column);
+    imki_coherence_add(coherence, record->rows, record->log.data);
+    imki_coherence_tell(coherence, record->log.column, &log->findings);
+    imki_arena_free(&scratch);
+    return IMK_OK;
 }
 
 static imk_status identify(imk_identify_log *log, const imk_record_source *source,
@@ -213,7 +218,7 @@ static imk_status identify(imk_identify_log *log, const imk_record_source *sourc
         status = imk_even_record_load(source, log->settings.gaps, job, &log->record, &log->findings,
                                       error);
     if (status == IMK_OK && !taken)
-        tell_coherence(log);
+        status = tell_coherence(log, job, error);
     if (status == IMK_OK && !taken)
         status = imki_identify_channels(log, job, error);
     if (status == IMK_OK && log->settings.from_allan)

@@ -187,23 +187,23 @@ static bool is_told(const imk_findings *findings, const char *name)
 }
 
 /* Of many axes that share their noise, each is told with the one with which it shares most. */
-void imki_coherence_tell(const imki_coherence *s, const imk_log_column *columns,
+void imki_coherence_tell(const imki_coherence *coherence, const imk_log_column *columns,
                          imk_findings *findings)
 {
     double shared[IMKI_COHERENT_AXES * (IMKI_COHERENT_AXES - 1) / 2];
     double most[IMKI_COHERENT_AXES] = {0};
-    for (size_t b = 1; b < s->axes; b++)
+    for (size_t b = 1; b < coherence->axes; b++)
         for (size_t a = 0; a < b; a++) {
-            const double found = shared[pair_of(a, b)] = coherence_of(s, a, b);
+            const double found = shared[pair_of(a, b)] = coherence_of(coherence, a, b);
             most[a] = fmax(most[a], found);
             most[b] = fmax(most[b], found);
         }
-    for (size_t b = 1; b < s->axes; b++)
+    for (size_t b = 1; b < coherence->axes; b++)
         for (size_t a = 0; a < b; a++) {
             char names[2 * sizeof columns->name];
             const double found = shared[pair_of(a, b)];
-            snprintf(names, sizeof names, "%s\t%s", columns[s->column[b]].name,
-                     columns[s->column[a]].name);
+            snprintf(names, sizeof names, "%s\t%s", columns[coherence->column[b]].name,
+                     columns[coherence->column[a]].name);
             if (found > told && found >= fmin(most[a], most[b]) && !is_told(findings, names))
                 imki_find(findings, found > doubted ? IMK_FINDING_WARNING : IMK_FINDING_NOTE,
                           "correlated", names, IMKI_NUMBERS(found));
