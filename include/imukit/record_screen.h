@@ -50,8 +50,8 @@ typedef struct imk_screen {
     /** More than 0.5 % of the samples are outliers, or many are nearly outliers: the tails of the
      *  noise itself, which imk_screen_apply() leaves in. */
     bool heavy_tails;
-    bool clustered; /**< more samples are beyond 5 standard deviations of most samples than from 3.5
-                       to 5, as faults are and tails that go on evenly are not */
+    bool clustered; /**< eight times as many samples are beyond 5 standard deviations of most as
+                       from 3.5 to 5, as faults are and tails that go on evenly are not */
     double core; /**< standard deviation within 32 samples by the median, which tails do not move,
                     over that by the mean square; 1 for normal noise */
     double noise_scatter;  /**< relative standard deviation of the variance within 32 samples over

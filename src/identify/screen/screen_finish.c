@@ -13,9 +13,10 @@ enum { LEVELS_MIN = 64, BATCHES_MIN = 10, CYCLE_LEVELS = 256, CYCLE_LEVELS_MIN =
 /* More outliers than this share of the samples, or half as many samples that are nearly outliers,
  * are the noise itself. */
 static const double tail_share = 5e-3, tail_shoulder = 0.5;
-/* Of tails that go on evenly, the part beyond 5 standard deviations of most samples is smaller than
- * that from 3.5 to 5: by 3 to 4 for Student's t of 5 degrees and Laplace's density. */
-static const double tail_normal = 4.65e-4, clustered_least = 8;
+/* Beyond 5 standard deviations of most samples there are fewer than from 3.5 to 5 where tails are
+ * those of Student's t of 5 degrees or of Laplace's density, by 3 to 4; six times as many where
+ * some samples have ten times the noise; and 14 times as many where spikes are 6.5 +- 1. */
+static const double tail_normal = 4.65e-4, clustered_least = 8, clustered_ratio = 8;
 
 static void count_saturated(imk_screen *f, const imki_ends *ends)
 {
@@ -84,7 +85,7 @@ static void find_tails(imk_screener *s)
     f->heavy_tails =
         f->outliers.count > 0 && (outliers > tail_share * present || (double)s->shoulder > due);
     const double evenly = s->far[0] - tail_normal * s->tail_samples;
-    f->clustered = s->far[1] >= clustered_least && s->far[1] > evenly;
+    f->clustered = s->far[1] >= clustered_least && s->far[1] > clustered_ratio * evenly;
     const double fast = s->fast_blocks > 0 ? sqrt(s->fast / s->fast_blocks) : 0;
     const double core = s->core_count > 0 ? 1.4826 * s->core_sum / s->core_count : 0;
     /* a sample is off the mean of 32, itself among them, by 31/32 of its variance */

@@ -147,17 +147,21 @@ void imki_screen_variances(imk_screener *s)
 
 static const double tail_begins = 3.5, tail_far = 5;
 
-/* Samples of the chunk that are far from the mean of their block, and very far, by the standard
- * deviation of most. */
+/* Samples of the chunk that are far from the mean of their block without its ends, and very far, by
+ * the standard deviation of most. */
 static void count_tails(imk_screener *s, double core)
 {
     for (size_t i = 0; i + BLOCK <= s->count[0]; i += BLOCK) {
         const double *x = s->loose + i;
-        double sum = 0;
+        double sum = 0, low = 0, high = 0;
         size_t far = 0, very_far = 0;
-        for (size_t k = 0; k < BLOCK; k++)
-            sum += x[k] - x[0];
-        const double mean = x[0] + sum / BLOCK;
+        for (size_t k = 0; k < BLOCK; k++) {
+            const double d = x[k] - x[0];
+            sum += d;
+            low = d < low ? d : low;
+            high = d > high ? d : high;
+        }
+        const double mean = x[0] + (sum - low - high) / (BLOCK - 2);
         for (size_t k = 0; k < BLOCK; k++) {
             far += fabs(x[k] - mean) > tail_begins * core;
             very_far += fabs(x[k] - mean) > tail_far * core;
