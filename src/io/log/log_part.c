@@ -72,7 +72,7 @@ imk_status imki_log_part_empty(const imk_log_reader *reader, imk_error *error)
         return IMK_OK;
     snprintf(found, sizeof found, "the log ends after %.6g s", reader->part.place);
     return imk_error_set(error, IMK_ERROR_EMPTY, "", found,
-                         "rows between the times of --after and --before");
+                         "give --after and --before times within the log");
 }
 
 imk_status imki_log_part_check(const imk_log_settings *s, imk_error *error)
