@@ -347,6 +347,106 @@ static void combine_all(const imki_estimator *e, int sensor, const opinions *o,
     }
 }
 
+/* ---- an excess that is slow --------------------------------------------------------------------
+ */
+
+/* Squares of the residuals of a sensor, of white noise as stated and flicker of strength b:
+ *
+ *     S = tr R + b tr RC,   variance 2 (tr R + 2 b tr RC + b^2 tr (RC)^2). */
+typedef struct slow_excess {
+    double square;   /* S */
+    double white;    /* tr R */
+    double expected; /* tr RC */
+    double modes;    /* (tr RC)^2/tr (RC)^2 */
+} slow_excess;
+
+/* Degrees of freedom of a sum of squares of n equally spaced values of flicker about their mean:
+ * its components have variances 1, 1/2, 1/3 ... of the first. */
+static double flicker_modes(size_t n)
+{
+    double sum = 0.0, squares = 0.0;
+    for (size_t k = 1; k < n; k++) {
+        sum += 1.0 / (double)k;
+        squares += 1.0 / ((double)k * (double)k);
+    }
+    return sum * sum / squares;
+}
+
+static slow_excess excess_of(const imki_estimator *e, int sensor, const imki_fit *fit)
+{
+    slow_excess x = {0.0, 0.0, 0.0, 0.0};
+    for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
+        const int part = imki_part_of(e, sensor, axis);
+        const size_t count = fit->count[part];
+        if (count < 2)
+            continue;
+        x.square += fit->shared_square[part];
+        x.white += fit->shared_redundancy[part];
+        x.expected += fit->slow_square[part];
+        x.modes += flicker_modes(count) * fit->shared_redundancy[part] / (double)(count - 1);
+    }
+    return x;
+}
+
+/* Variance of the squares, when `slow` of them are flicker's. */
+static double spread_of(const slow_excess *x, double slow)
+{
+    return 2.0 * (x->white + 2.0 * slow + slow * slow / x->modes);
+}
+
+/* ln of the density of the squares, taken for a gamma distribution. */
+static double log_density(const slow_excess *x, double slow)
+{
+    const double mean = x->white + slow, scale = spread_of(x, slow) / mean, shape = mean / scale;
+    return (shape - 1.0) * imk_ln(x->square) - x->square / scale - shape * imk_ln(scale) -
+           imk_log_gamma(shape);
+}
+
+/* Variances with flicker of several strengths, each by how well it agrees with the squares; none
+ * of the instabilities sqrt(b) is likelier before. */
+static void ask_strengths(const imki_estimator *e, const slow_excess *x, opinions *o)
+{
+    const double seen = fmax(0.0, x->square - x->white);
+    const double most = seen + 4.0 * sqrt(spread_of(x, seen));
+    o->count = FORMS;
+    for (size_t k = 0; k < o->count; k++) {
+        const double part = ((double)k + 0.5) / FORMS, slow = part * part * most;
+        o->deviance[k] = -2.0 * log_density(x, slow);
+        for (size_t p = 0; p < e->parameters; p++) {
+            const size_t at = p * e->globals + p;
+            o->variance[k][p] =
+                e->normal.covariance[at] + slow / x->expected * fmax(0.0, e->slow.covariance[at]);
+            o->freedom[k][p] = (double)INFINITY;
+        }
+    }
+    set_weights(o);
+}
+
+/* What gyros at rest scatter by beyond the noise within holds may be slow, while accelerometers
+ * also read what a hand or a table did to a pose. Parameters whose inputs change slowly in the test
+ * are then known less well than the excess says on the average, as those whose inputs change
+ * quickly are known better. Few holds do not tell which it is; the intervals are not narrower than
+ * with flicker. */
+static void ask_slow_noise(imki_estimator *e, const double *variance, double *freedom, opinions *o)
+{
+    const form chosen = form_of(e);
+    imki_fit fit;
+    e->by_axis[IMK_GYRO] = true;
+    e->added[IMK_GYRO] = 0.0;
+    for (int axis = 0; axis < IMK_AXES_MAX; axis++)
+        e->factor[imki_part_of(e, IMK_GYRO, axis)] = 1.0;
+    if (imki_estimator_covariance(e) == IMK_OK && imki_slow_noise_assume(e, IMK_GYRO, &fit)) {
+        const slow_excess x = excess_of(e, IMK_GYRO, &fit);
+        if (x.white > 0.0 && x.expected > 0.0) {
+            ask_strengths(e, &x, o);
+            for (size_t p = 0; p < e->parameters; p++)
+                if (e->problem->parameter[p].sensor == IMK_GYRO)
+                    freedom[p] = fmin(freedom[p], combine(o, p, sqrt(variance[p])));
+        }
+    }
+    take_form(e, &chosen);
+}
+
 imk_status imki_scatter_freedoms(imki_estimator *e, imki_fit *fit, double *freedom)
 {
     opinions o;
@@ -367,6 +467,8 @@ imk_status imki_scatter_freedoms(imki_estimator *e, imki_fit *fit, double *freed
         asked = true;
         if (o.count > 1)
             combine_all(e, sensor, &o, variance, freedom);
+        if (sensor == IMK_GYRO)
+            ask_slow_noise(e, variance, freedom, &o);
     }
     if (!asked)
         return IMK_OK;

@@ -28,6 +28,8 @@
  * flicker goes that is independent from one to the next. */
 #include "estimator_internal.h"
 
+#include "base/algebra/vector_internal.h"
+
 #include "imukit/elementary.h"
 
 #include <math.h>
@@ -67,6 +69,13 @@ typedef struct run {
     int record, sensor, axis;
     size_t first, end;
 } run;
+
+static double flicker_of(const imki_estimator *e, int sensor, int axis)
+{
+    const double stated =
+        imk_model_triad(&e->problem->model, sensor)->noise.bias_instability.value[axis];
+    return e->slow.stated ? stated : e->slow.assumed[sensor];
+}
 
 static bool is_stated(const imk_noise *noise, int axis)
 {
@@ -120,12 +129,14 @@ size_t imki_slow_noise_sums(void)
 void imki_slow_noise_start(imki_estimator *e)
 {
     const imk_calibration *c = e->problem;
-    bool stated = false;
+    bool *stated = &e->slow.stated;
+    *stated = false;
     for (int sensor = 0; sensor < 2; sensor++)
         for (int axis = 0; axis < imk_model_triad(&e->problem->model, sensor)->axis_count; axis++)
-            stated = stated || is_stated(&imk_model_triad(&e->problem->model, sensor)->noise, axis);
+            *stated =
+                *stated || is_stated(&imk_model_triad(&e->problem->model, sensor)->noise, axis);
     e->slow.count = 0;
-    for (size_t i = 0; stated && i < e->observations; i++)
+    for (size_t i = 0; i < e->observations; i++)
         if (has_time(c, i))
             e->slow.order[e->slow.count++] = (int)i;
     /* By record and time: insertion with shrinking gaps. They come in order as a rule. */
@@ -191,7 +202,7 @@ static bool process_of(const imki_estimator *e, const run *r, process *p)
     *p = (process){.length = length_of(record)};
     if (!imk_model_triad(&e->problem->model, r->sensor)->present ||
         r->axis >= imk_model_triad(&e->problem->model, r->sensor)->axis_count ||
-        !is_stated(noise, r->axis))
+        !(is_stated(noise, r->axis) || flicker_of(e, r->sensor, r->axis) > 0.0))
         return false;
     for (size_t i = r->first; i < r->end; i++)
         if (!isnan(reading_of(e, r, i))) {
@@ -202,7 +213,7 @@ static bool process_of(const imki_estimator *e, const run *r, process *p)
         }
     if (count == 0.0)
         return false;
-    const double b = noise->bias_instability.value[r->axis], k = noise->random_walk.value[r->axis];
+    const double b = flicker_of(e, r->sensor, r->axis), k = noise->random_walk.value[r->axis];
     const double quickest = fmax(shortest / flicker_span, 0.25 * record->dt);
     add_flicker(p, b, quickest);
     for (int i = 0; i < noise->gauss_markov_count; i++) {
@@ -407,11 +418,17 @@ static double length_of_all(const imki_estimator *e, int sensor, int axis)
     return sum;
 }
 
+static bool is_active(const imki_estimator *e)
+{
+    return e->slow.count > 0 &&
+           (e->slow.stated || e->slow.assumed[IMK_GYRO] > 0.0 || e->slow.assumed[IMK_ACCEL] > 0.0);
+}
+
 void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit)
 {
     const size_t g = e->globals;
     sums *s = e->slow.sums;
-    if (e->slow.count == 0)
+    if (!is_active(e))
         return;
     memset(e->slow.covariance, 0, g * g * sizeof *e->slow.covariance);
     for (int sensor = 0; sensor < 2; sensor++) {
@@ -447,7 +464,7 @@ void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit)
 void imki_slow_noise_add(imki_estimator *e, double *freedom)
 {
     const size_t g = e->globals;
-    if (e->slow.count == 0)
+    if (!is_active(e))
         return;
     for (size_t p = 0; p < e->parameters; p++) {
         const double white = e->normal.covariance[p * g + p];
@@ -456,4 +473,32 @@ void imki_slow_noise_add(imki_estimator *e, double *freedom)
     }
     for (size_t i = 0; i < g * g; i++)
         e->normal.covariance[i] += e->slow.covariance[i];
+}
+
+/* ---- not stated ------------------------------------------------------------------------------ */
+
+/* All readings of a sensor have a time and no other input than gravity and the Earth. */
+static bool is_at_rest(const imki_estimator *e, int sensor)
+{
+    const double still = 1e-3; /* [rad/s]; the Earth's rate is 7e-5 */
+    for (size_t i = 0; i < e->observations; i++) {
+        const imk_observation *o = &e->problem->observation[i];
+        bool read = false;
+        for (int axis = 0; axis < IMK_AXES_MAX; axis++)
+            read = read || !isnan(e->reading[i][sensor][axis]);
+        const bool rests = o->knowledge == IMK_INPUT_GRAVITY || imki_norm3(o->rate) < still;
+        if (read && (!has_time(e->problem, i) || o->moving || !rests))
+            return false;
+    }
+    return true;
+}
+
+bool imki_slow_noise_assume(imki_estimator *e, int sensor, imki_fit *fit)
+{
+    if (e->slow.stated || !is_at_rest(e, sensor))
+        return false;
+    e->slow.assumed[sensor] = 1.0;
+    imki_fit_groups(e, fit);
+    e->slow.assumed[sensor] = 0.0;
+    return true;
 }

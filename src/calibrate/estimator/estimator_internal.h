@@ -79,10 +79,12 @@ typedef struct imki_point {
     double (*horizontal)[3]; /* per observation: the Earth's horizontal rate, body axes [rad/s] */
 } imki_point;
 
-/* Slow noise that the model states (calibration_slow_noise.c). */
+/* Slow noise that the model states, or that is assumed (calibration_slow_noise.c). */
 typedef struct imki_slow_noise {
-    size_t count;       /* observations that have a time; 0: no slow noise */
-    int *order;         /* of these, by record and time */
+    bool stated;       /* by the model */
+    double assumed[2]; /* flicker of a sensor for which the model states nothing [rad/s], [m/s^2] */
+    size_t count;      /* observations that have a time; 0: no slow noise */
+    int *order;        /* of these, by record and time */
     double *covariance; /* what it adds to that of the globals */
     double *axis;       /* the same of one axis */
     void *sums;         /* along a record, imki_slow_noise_sums() bytes */
@@ -285,6 +287,10 @@ void imki_slow_noise_start(imki_estimator *e);
 void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit);
 /* Add it to the covariance of the globals; it counts as known exactly. */
 void imki_slow_noise_add(imki_estimator *e, double *freedom);
+/* imki_fit_groups() with flicker of 1 rad/s or m/s^2 in the readings of a sensor; what it adds to
+ * the covariance is in e->slow.covariance.
+ * @return false: the model states slow noise, or not all of the readings are at rest */
+bool imki_slow_noise_assume(imki_estimator *e, int sensor, imki_fit *fit);
 
 /* ---- calibration_scatter.c: what is wrong about the sigmas stated ---- */
 /* From the solution with one factor a group: choose by the restricted likelihood, and solve so. */
