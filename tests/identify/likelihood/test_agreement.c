@@ -4,9 +4,9 @@
 #include "check.h"
 
 #include "identify/allan/allan_fit_internal.h"
+#include "identify/identify_values.h"
 #include "identify/likelihood/identify_internal.h"
 #include "imukit/allan.h"
-#include "imukit/identify_record.h"
 #include "imukit/samples.h"
 
 #include <stdlib.h>
@@ -74,37 +74,6 @@ static void test_likely_range(void **state)
     }
 }
 
-static imk_identification identify(bool shape, size_t n, const double *x)
-{
-    imk_identify_settings settings = imk_identify_default();
-    imk_identification r;
-    const size_t size = imk_identify_workspace_size(n);
-    void *workspace = malloc(size);
-    settings.dt = 0.01;
-    settings.shape = shape;
-    CHECK_STATUS(imk_identify_channel(&settings, n, x, &r, workspace, size, NULL), IMK_OK);
-    free(workspace);
-    return r;
-}
-
-static imk_identification identify_in_one_pass(size_t n, const double *x)
-{
-    imk_identify_settings settings = imk_identify_default();
-    imk_identification r;
-    imk_identify_record *record;
-    const size_t size = imk_identify_record_size(n);
-    void *memory = malloc(size);
-    settings.dt = 0.01;
-    CHECK_STATUS(imk_identify_record_begin(n, &record, memory, size, NULL), IMK_OK);
-    CHECK_STATUS(imk_identify_record_add(record, n, x, NULL), IMK_OK);
-    const size_t room = imk_identify_record_workspace_size(record);
-    void *workspace = malloc(room);
-    CHECK_STATUS(imk_identify_record_finish(record, &settings, &r, workspace, room, NULL), IMK_OK);
-    free(workspace);
-    free(memory);
-    return r;
-}
-
 /* White noise is no misfit, in memory and in one pass: less than one record in 10000, so that three
  * of 80 are one in 1e7. With a noise type that was found at few clusters, one of seven long records
  * was a misfit. */
@@ -117,9 +86,9 @@ static void test_white_noise_agrees(void **state)
     size_t misfits = 0;
     for (uint32_t record = 0; record < records; record++) {
         imk_random_normals(imk_random_seeded(32), record, 0, LONG, x);
-        imk_identification r = identify(false, SHORT, x);
+        imk_identification r = identify_values(false, SHORT, x);
         misfits += r.verdict & IMK_VERDICT_MISFIT ? 1 : 0;
-        r = identify_in_one_pass(LONG, x);
+        r = identify_values_in_one_pass(LONG, x);
         misfits += r.verdict & IMK_VERDICT_MISFIT ? 1 : 0;
     }
     assert_true(misfits < 3);
@@ -139,7 +108,8 @@ static void test_resonance_disagrees(void **state)
         imk_resonance_start(&ringing, (imk_resonance){1, 12, 20}, 0.01, imk_random_seeded(33), 7),
         IMK_OK);
     imk_arma_add(&ringing, N, x);
-    const imk_identification without = identify(false, N, x), with = identify(true, N, x);
+    const imk_identification without = identify_values(false, N, x),
+                             with = identify_values(true, N, x);
     assert_true(without.verdict & IMK_VERDICT_MISFIT);
     assert_true(without.valid_from > 0.02);
     assert_false(with.verdict & IMK_VERDICT_MISFIT);

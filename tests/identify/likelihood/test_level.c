@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Slow noise that an automatic zero took away is missed, and sound records are not doubted. */
 #include "check.h"
-#include "imukit/identify.h"
-#include "imukit/identify_record.h"
+#include "identify/identify_values.h"
 #include "imukit/noise.h"
 
 #include <stdlib.h>
@@ -36,37 +35,6 @@ static void zero(size_t stretch, size_t n, double *x)
     }
 }
 
-static imk_identification identify(size_t n, const double *x)
-{
-    imk_identify_settings settings = imk_identify_default();
-    imk_identification r;
-    const size_t size = imk_identify_workspace_size(n);
-    void *workspace = malloc(size);
-    settings.dt = DT;
-    settings.shape = false;
-    CHECK_STATUS(imk_identify_channel(&settings, n, x, &r, workspace, size, NULL), IMK_OK);
-    free(workspace);
-    return r;
-}
-
-static imk_identification identify_in_one_pass(size_t n, const double *x)
-{
-    imk_identify_settings settings = imk_identify_default();
-    imk_identification r;
-    imk_identify_record *record;
-    const size_t size = imk_identify_record_size(n);
-    void *memory = malloc(size);
-    settings.dt = DT;
-    CHECK_STATUS(imk_identify_record_begin(n, &record, memory, size, NULL), IMK_OK);
-    CHECK_STATUS(imk_identify_record_add(record, n, x, NULL), IMK_OK);
-    const size_t room = imk_identify_record_workspace_size(record);
-    void *workspace = malloc(room);
-    CHECK_STATUS(imk_identify_record_finish(record, &settings, &r, workspace, room, NULL), IMK_OK);
-    free(workspace);
-    free(memory);
-    return r;
-}
-
 static bool is_low(const imk_identification *r)
 {
     return imk_level_loss(1, &r).degrees > 0;
@@ -87,7 +55,7 @@ static void test_sound(void **state)
             x[i] = (rounded - before) / DT;
             before = rounded;
         }
-        const imk_identification r = identify(N, x);
+        const imk_identification r = identify_values(false, N, x);
         assert_false(is_low(&r));
         CHECK_CLOSE(r.level[0].degrees, 8, 0.01);
         CHECK_RELATIVE(r.level[0].period, 2 * N * DT / 8, 1e-9);
@@ -101,7 +69,7 @@ static void test_zeroed(void **state)
     double x[N];
     make(20, 3, N, x);
     zero(250, N, x);
-    const imk_identification r = identify(N, x), *one = &r;
+    const imk_identification r = identify_values(false, N, x), *one = &r;
     const imk_level_sum low = imk_level_loss(1, &one);
     assert_true(low.degrees >= 8);
     CHECK_BELOW(low.power, 0.5 * low.degrees);
@@ -118,7 +86,7 @@ static void test_together(void **state)
     for (uint32_t c = 0; c < COUNT; c++) {
         make(30 + c, 3, N, x);
         zero(2000, N, x);
-        r[c] = identify(N, x);
+        r[c] = identify_values(false, N, x);
         all[c] = &r[c];
         assert_false(is_low(&r[c]));
     }
@@ -130,10 +98,10 @@ static void test_one_pass(void **state)
     (void)state;
     double *x = malloc(LONG * sizeof *x);
     make(40, 3, LONG, x);
-    imk_identification r = identify_in_one_pass(LONG, x);
+    imk_identification r = identify_values_in_one_pass(LONG, x);
     assert_false(is_low(&r));
     zero(2000, LONG, x);
-    r = identify_in_one_pass(LONG, x);
+    r = identify_values_in_one_pass(LONG, x);
     assert_true(is_low(&r));
     free(x);
 }

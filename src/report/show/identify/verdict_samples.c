@@ -255,8 +255,7 @@ static const imki_concern concerns[] = {
      "one value repeated longer than the noise allows, left out", "one value repeated, kept"},
     {0, find_dead, 0, IMK_FINDING_WARNING, "dead",
      "a value that does not change makes up a part of the log: the sensor or its driver stood "
-     "still; "
-     "look for the cause, and record again",
+     "still; look for the cause, and record again",
      NULL},
     {0, find_lost, IMK_SCREEN_STUCK, IMK_FINDING_NOTE, "lost",
      "one value far outside the noise, as a logger writes it for a row that was lost; left out",
