@@ -72,11 +72,27 @@ static void test_sound(void **state)
     }
 }
 
+/* Steps make the largest values equal: of 300 records of white noise none ends abruptly. */
+static void test_sound_in_steps(void **state)
+{
+    (void)state;
+    static const double steps[] = {0.15, 0.2, 0.24, 0.3, 0.4, 0.49};
+    for (uint64_t seed = 0; seed < 300; seed++) {
+        const double step = steps[seed % 6];
+        make(1000 + seed, 0, 0, 0);
+        for (size_t i = 0; i < N; i++)
+            rate[i] = step * nearbyint(rate[i] / step);
+        const imk_screen found = screen();
+        assert_true(!found.ends_low && !found.ends_high);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_abrupt),
         cmocka_unit_test(test_sound),
+        cmocka_unit_test(test_sound_in_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
