@@ -454,6 +454,15 @@ def packets_again(record, rng, strength):
         column.values = column.values[np.arange(record.rows) - 10 * again[packet]]
 
 
+def written_twice(record, rng, strength):
+    """This share of the rows, from the beginning, is written again behind the others; stamps go
+    on."""
+    again = int(strength * record.rows)
+    for column in record.columns:
+        column.values = np.concatenate((column.values, column.values[:again]))
+    record.time = np.arange(record.rows) * record.dt
+
+
 # ---- units -----------------------------------------------------------------------------------
 
 
@@ -583,6 +592,8 @@ FAULTS = [
           "the noise of an accelerometer is on a gyro"),
     Fault("packets_again", "3", "nb_30min", (0.03, 0.05, 0.1), "share", packets_again,
           "packets of ten rows are lost, those before written again"),
+    Fault("written_twice", "3", "nb_30min", (0.1, 0.4, 1), "share", written_twice,
+          "a part of the log is written again at its end"),
     Fault("lost_rows", "3", "six_g", (0.001, 0.01, 0.05), "share", lost_rows,
           "lost rows are written as zeros"),
     Fault("handled", "8", "six_g", (30, 300, 3000), "sigma", handled,

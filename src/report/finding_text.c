@@ -108,6 +108,11 @@ static const struct message {
      "{name}: {0.2g} % of the rows are the rows {1} before, written again on all axes, as a packet "
      "of {1} rows in place of the next one: white noise comes out wrong; find out where rows are "
      "written twice, and record again"},
+    {"replayed",
+     "{name}: {0.2g} % of the rows are written again: those from about {1.6g} s on are those from "
+     "{2.6g} s on, with the same values on all axes; what is counted twice makes the intervals too "
+     "narrow and slow terms wrong: find out where rows are written twice, or read the part before "
+     "by --before {1.6g}s"},
     {"copy", "{name} has the values of {other} in every row: one of the two is a copy, so give the "
              "right columns with --columns"},
     {"follows", "the changes of {name} are those of {other}, times {0.4g}: two sensors have noise "

@@ -267,6 +267,50 @@ static void repeat_packets(test_log *l, double packet)
             l->gyro[c][i] = l->gyro[c][i - n];
 }
 
+/* A share of the rows, written a second time behind the others. */
+static void write_again(test_log *l, double share)
+{
+    const size_t again = (size_t)(share * (double)l->rows), first = (l->rows - again) / 2;
+    for (size_t i = 0; i < again; i++) {
+        move_row(l, first + i, l->rows + i);
+        l->time[l->rows + i] = (double)(l->rows + i) / l->rate;
+    }
+    l->rows += again;
+}
+
+/* Other noise of the whole log, in the middle of which it stands still at the value where it
+ * began to. */
+static void stand_still(test_log *l, double share)
+{
+    const size_t still = (size_t)(share * (double)l->rows);
+    for (size_t part = 0; part < 2; part++)
+        for (size_t i = 0; i < still; i++)
+            for (int c = 0; c < AXES; c++)
+                l->gyro[c][part * l->rows / 2 + i] = l->gyro[c][0];
+}
+
+/* A tone of a period of whole rows, which repeats where digits are coarse. */
+static void repeat_tone(test_log *l, double period)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        for (int c = 0; c < AXES; c++)
+            l->gyro[c][i] =
+                0.2 * l->gyro[c][i] +
+                5 * l->noise * sqrt(l->rate) * sin(2 * 3.141592653589793 * (double)i / period + c);
+}
+
+/* Only the first axis has noise, and that is slow. */
+static void wander(test_log *l, double pole)
+{
+    double level = 0;
+    for (size_t i = 0; i < l->rows; i++) {
+        level += pole * (l->gyro[0][i] / sqrt(pole / 2) - level);
+        l->gyro[0][i] = level;
+        for (int c = 1; c < AXES; c++)
+            l->gyro[c][i] = level > 0 ? 0 : l->noise;
+    }
+}
+
 /* Digits of a share of the noise. */
 static void round_values(test_log *l, double share)
 {
@@ -312,7 +356,8 @@ static const char *doubt_of(const imk_findings *findings)
 {
     for (size_t k = 0; k < findings->count; k++)
         if ((strncmp(findings->item[k].code, "stamps:", 7) == 0 ||
-             strcmp(findings->item[k].code, "packets") == 0) &&
+             strcmp(findings->item[k].code, "packets") == 0 ||
+             strcmp(findings->item[k].code, "replayed") == 0) &&
             findings->item[k].level == IMK_FINDING_WARNING)
             return findings->item[k].code;
     return NULL;
@@ -505,6 +550,65 @@ static void test_packets_written_again(void **context)
                 packets[p], packets[p], 1);
 }
 
+/* A part that is written twice is told, with when it begins again, whatever the digits; so is a
+ * whole log with a clock that begins again. */
+static void test_replayed(void **context)
+{
+    (void)context;
+    static test_log l;
+    static const double shares[] = {0.1, 0.4, 1}, digits[] = {1e-6, 0.3, 1, 2};
+    for (int s = 0; s < 3; s++)
+        for (int d = 0; d < 4; d++) {
+            imk_even_record even;
+            imk_findings findings;
+            make(&l, (uint64_t)(7 * s + d), ROWS, 100);
+            round_values(&l, digits[d]);
+            write_again(&l, shares[s]);
+            load(&l, &even, &findings);
+            const imk_finding *told = find(&findings, "replayed");
+            assert_non_null(told);
+            assert_int_equal(told->level, IMK_FINDING_WARNING);
+            CHECK_RELATIVE(told->number[0], 100 * shares[s] / (1 + shares[s]), 0.1);
+            CHECK_CLOSE(told->number[1], 60, 0.3);
+            CHECK_CLOSE(told->number[2], 30 * (1 - shares[s]), 0.3);
+            imk_even_record_free(&even);
+        }
+    make(&l, 1, ROWS, 100);
+    write_again(&l, 1);
+    for (size_t i = ROWS; i < l.rows; i++)
+        l.time[i] = l.time[i - ROWS];
+    imk_even_record even;
+    imk_findings findings;
+    load(&l, &even, &findings);
+    assert_non_null(find(&findings, "replayed"));
+    imk_even_record_free(&even);
+}
+
+/* Rows that come again by chance: of coarse digits, of a sensor that stands still, of a tone, of
+ * slow noise on few values. */
+static void test_rows_by_chance(void **context)
+{
+    (void)context;
+    static test_log l;
+    static const fault cases[][3] = {{{sound, 0}, {round_values, 3}, {NULL, 0}},
+                                     {{sound, 0}, {round_values, 5}, {NULL, 0}},
+                                     {{stand_still, 0.2}, {NULL, 0}},
+                                     {{repeat_tone, 4}, {round_values, 1}, {NULL, 0}},
+                                     {{repeat_tone, 100}, {round_values, 1}, {NULL, 0}},
+                                     {{wander, 0.01}, {round_values, 1}, {NULL, 0}},
+                                     {{wander, 0.1}, {round_values, 1}, {NULL, 0}}};
+    for (int k = 0; k < 7; k++)
+        for (uint64_t seed = 0; seed < 4; seed++) {
+            imk_even_record even;
+            imk_findings findings;
+            make(&l, seed, MOST, 100);
+            apply(&l, cases[k]);
+            load(&l, &even, &findings);
+            assert_null(find(&findings, "replayed"));
+            imk_even_record_free(&even);
+        }
+}
+
 static void test_a_stated_rate(void **context)
 {
     (void)context;
@@ -631,24 +735,26 @@ static void test_noise(void **context)
 }
 
 /* The verdict of held samples, of late rows, of a column given twice, of axes with one noise and of
- * packets written again is no all-clear, and begins with a short sentence. */
+ * rows written again is no all-clear, and begins with a short sentence. */
 static void test_verdict(void **context)
 {
     (void)context;
     static test_log l;
     static const fault faults[][2] = {
-        {{hold, 1.5}, {NULL, 0}},    {{burst, 100}, {NULL, 0}},
-        {{copy_axis, 2}, {NULL, 0}}, {{follow_axis, 2}, {NULL, 0}},
-        {{mix_axis, 2}, {NULL, 0}},  {{repeat_packets, 5}, {NULL, 0}}};
-    static const char *const codes[] = {"held", "late", "copy", "follows", "correlated", "packets"};
+        {{hold, 1.5}, {NULL, 0}},      {{burst, 100}, {NULL, 0}},  {{copy_axis, 2}, {NULL, 0}},
+        {{follow_axis, 2}, {NULL, 0}}, {{mix_axis, 2}, {NULL, 0}}, {{repeat_packets, 5}, {NULL, 0}},
+        {{write_again, 1}, {NULL, 0}}};
+    static const char *const codes[] = {"held",       "late",    "copy",    "follows",
+                                        "correlated", "packets", "replayed"};
     static const char *const sentences[] = {
         "Usable with care: rows repeat the samples of a slower sensor",
         "Usable with care: rows are stamped late",
         "Usable with care: a column is the copy of another",
         "Usable with care: a column is computed from another",
         "Usable with care: axes share their noise",
-        "Usable with care: rows are written twice in place of others"};
-    for (int k = 0; k < 6; k++) {
+        "Usable with care: rows are written twice in place of others",
+        "Usable with care: a part of the log is written a second time"};
+    for (int k = 0; k < 7; k++) {
         imk_array_source memory;
         imk_identify_log *found;
         imk_error error;
@@ -742,6 +848,8 @@ int main(void)
         cmocka_unit_test(test_doubled_rows),
         cmocka_unit_test(test_held_samples),
         cmocka_unit_test(test_packets_written_again),
+        cmocka_unit_test(test_replayed),
+        cmocka_unit_test(test_rows_by_chance),
         cmocka_unit_test(test_a_stated_rate),
         cmocka_unit_test(test_no_rate),
         cmocka_unit_test(test_why_there_is_no_rate),

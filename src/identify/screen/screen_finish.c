@@ -256,8 +256,8 @@ void imki_screen_conclude(imk_screener *s)
     f->held = imki_repeated_excess(s);
     f->straight = imki_straight_excess(s);
     find_saturation(s);
-    f->ends_low = imki_edge_is_abrupt(&s->lower, f->noise, f->resolution);
-    f->ends_high = imki_edge_is_abrupt(&s->upper, f->noise, f->resolution);
+    f->ends_low = imki_edge_is_abrupt(&s->lower, f->present, f->noise, f->resolution);
+    f->ends_high = imki_edge_is_abrupt(&s->upper, f->present, f->noise, f->resolution);
     f->end_low = s->lower.count > 0 ? -s->lower.largest[0] : 0;
     f->end_high = s->upper.count > 0 ? s->upper.largest[0] : 0;
     find_tails(s);

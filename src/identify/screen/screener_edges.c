@@ -1,20 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Values that end abruptly.
  *
- * Near its largest value noise is rare: of n Gaussian samples some three are within a quarter of a
- * standard deviation of the largest, since the density falls by exp(-z/4) over that distance and z
- * is 4 to 6. Where readings are clipped and then calibrated, folded back, wrapped around,
- * rectified, compressed, or dropped by value, many are. So that one slow wave is no crowd, samples
- * are counted in pieces of 64, once each: the largest of a piece is kept, if it is among the 64
- * largest. */
+ * Near its largest value noise is rare: the density of n Gaussian samples falls by exp(-z w) over w
+ * standard deviations there, with a z of at most sqrt(2 ln n). That k samples or more are within w
+ * of the largest and none is beyond has the probability (1 - exp(-z w))^(k-1), as of the smallest
+ * of a Poisson process; heavier tails have fewer. Where readings are clipped and then calibrated,
+ * folded back, wrapped around, rectified, compressed, or dropped by value, there are many. So that
+ * one slow wave is no crowd, samples are counted in pieces of 64, once each: the largest of a piece
+ * is kept, if it is among the 256 largest. Values in steps are counted by whole steps. */
 #include "screener_internal.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { PIECE = 64, CROWD = 30 };
+enum { PIECE = 64 };
 
-static const double near = 0.25; /* of the standard deviation */
+static const double near = 0.25;      /* of the standard deviation */
+static const double by_chance = 1e-6; /* for one end of a channel */
 
 void imki_edges_begin(imki_edges *e)
 {
@@ -45,13 +47,21 @@ void imki_edges_add(imki_edges *high, imki_edges *low, size_t count, const doubl
     }
 }
 
-bool imki_edge_is_abrupt(const imki_edges *e, double deviation, double step)
+/* How many samples noise does not have within some standard deviations of its largest. */
+static double crowd_beyond_chance(size_t samples, double within)
+{
+    const double fall = sqrt(2 * log((double)samples)) * within;
+    return 1 + log(by_chance) / log1p(-exp(-fall));
+}
+
+bool imki_edge_is_abrupt(const imki_edges *e, size_t samples, double deviation, double step)
 {
     size_t crowd = 0;
     const double within = fmax(near * deviation, 0.6 * step);
-    if (step > 2 * near * deviation)
+    if (samples < PIECE || step > 2 * near * deviation || !(deviation > 0))
         return false;
     while (crowd < e->count && e->largest[0] - e->largest[crowd] < within)
         crowd++;
-    return crowd >= CROWD;
+    const double whole = step > 0 ? step * ceil(within / step) : within;
+    return (double)crowd >= crowd_beyond_chance(samples, whole / deviation);
 }

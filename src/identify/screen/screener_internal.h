@@ -44,7 +44,7 @@ typedef struct imki_ends {
 } imki_ends;
 
 /* The largest values of pieces of the record, in order. */
-enum { IMKI_EDGE_PIECES = 64 };
+enum { IMKI_EDGE_PIECES = 256 };
 typedef struct imki_edges {
     size_t count;
     double largest[IMKI_EDGE_PIECES];
@@ -167,8 +167,9 @@ void imki_edges_begin(imki_edges *edges);
 /* @param low  of the negatives */
 void imki_edges_add(imki_edges *high, imki_edges *low, size_t count, const double *samples);
 /* Are there more samples near the largest than noise has?
- * @param deviation  of the fast noise @param step  between values; 0: none */
-bool imki_edge_is_abrupt(const imki_edges *edges, double deviation, double step);
+ * @param samples  of the record @param deviation  of the fast noise @param step  between values; 0:
+ * none */
+bool imki_edge_is_abrupt(const imki_edges *edges, size_t samples, double deviation, double step);
 
 /* screener_excess.c */
 /* Has the chunk noise, and steps fine enough that it spreads over them? */

@@ -4,6 +4,7 @@
 #include "record_repeats_internal.h"
 #include "record_stamps_internal.h"
 
+#include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
 
 #include "imukit/model.h"
@@ -113,21 +114,34 @@ static imk_status space(double rate, imk_gap_policy gaps, imk_even_record *recor
                                  : imki_space_evenly(rate, gaps, record, findings, error);
 }
 
-imk_status imk_even_record_load(const imk_record_source *source, imk_gap_policy gaps,
-                                const imk_job *job, imk_even_record *record, imk_findings *findings,
-                                imk_error *error)
+static imk_status load_and_tell(const imk_record_source *source, imk_gap_policy gaps,
+                                const imk_job *job, imk_even_record *record, imki_repeats *repeats,
+                                imk_findings *findings, imk_error *error)
 {
-    *record = (imk_even_record){.count = 0};
-    imki_repeats repeats;
     imk_status status = imki_record_load(source, job, &record->log, error);
     if (status != IMK_OK)
         return status;
     imk_even_record_choose(record);
     imk_log_forget_faults(&record->log);
-    status = space(source->rate, gaps, record, &repeats, findings, error);
+    status = space(source->rate, gaps, record, repeats, findings, error);
     if (status != IMK_OK)
         return status;
-    imki_repeats_tell(&repeats, record->log.column, record->dt, findings);
+    imki_repeats_tell(repeats, record->log.column, record->dt, findings);
     imki_even_record_unused(record, findings);
     return IMK_OK;
+}
+
+/* What is counted is too large for a small stack. */
+imk_status imk_even_record_load(const imk_record_source *source, imk_gap_policy gaps,
+                                const imk_job *job, imk_even_record *record, imk_findings *findings,
+                                imk_error *error)
+{
+    *record = (imk_even_record){.count = 0};
+    imki_arena scratch = {.allocator = job->allocator};
+    imki_repeats *repeats = imki_arena_room(&scratch, sizeof *repeats);
+    const imk_status status =
+        repeats ? load_and_tell(source, gaps, job, record, repeats, findings, error)
+                : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    imki_arena_free(&scratch);
+    return status;
 }

@@ -7,15 +7,16 @@
  * row directly before are told by others. */
 #include "record_packets_internal.h"
 
+#include "row_keys_internal.h"
+
 #include "jobs/job_internal.h"
 
 #include <math.h>
 #include <stdint.h>
-#include <string.h>
 
 enum {
     LAGS = IMKI_PACKET_LAGS,
-    LEAST = 2, /* lag; channels of a sensor */
+    LEAST = 2, /* lag of a packet; channels of a sensor */
     ROWS = 2048,
     EARLY = 32, /* stretches that are all counted; later one of so many */
     ROWS_LEAST = 1024
@@ -24,21 +25,14 @@ enum {
 /* Share of the rows written again that is told. */
 static const double told = 0.015;
 
-/* One number for the values of a row. Those of missing samples are all different. */
+/* Numbers of rows. Those with missing samples are all different. */
 static void number_rows(size_t channels, const int *column, size_t rows, double *const *columns,
                         size_t first, uint32_t *number)
 {
-    uint64_t key[ROWS] = {0};
-    for (size_t c = 0; c < channels; c++)
-        for (size_t i = 0; i < rows; i++) {
-            uint64_t bits;
-            const double x = columns[column[c]][first + i];
-            memcpy(&bits, &x, sizeof bits);
-            key[i] = ((key[i] ^ bits) + (x == x ? 0 : i + 1)) * 0x9e3779b97f4a7c15;
-            key[i] ^= key[i] >> 29;
-        }
+    uint64_t key[ROWS];
+    imki_row_keys(channels, column, rows, columns, first, key);
     for (size_t i = 0; i < rows; i++)
-        number[i] = (uint32_t)(key[i] >> 32);
+        number[i] = key[i] == 0 ? (uint32_t)i : (uint32_t)(key[i] >> 32);
 }
 
 static size_t count_equal(size_t rows, const uint32_t *number, size_t lag)
@@ -63,18 +57,32 @@ static size_t count_again(size_t rows, const uint32_t *number, size_t lag)
     return count;
 }
 
+/* Rows that differ from the one before, behind a row that equals that `lag` before; and those of
+ * them that equal it, too. */
+static void count_agreement(size_t rows, const uint32_t *number, size_t lag, size_t *behind,
+                            size_t *on)
+{
+    for (size_t i = LAGS + 1; i < rows; i++) {
+        const bool counts = number[i] != number[i - 1] && number[i - 1] == number[i - 1 - lag];
+        *behind += counts;
+        *on += counts && number[i] == number[i - lag];
+    }
+}
+
 void imki_packets_add(imki_packets *packets, size_t channels, const int *column, size_t rows,
                       double *const *columns, size_t first)
 {
     uint32_t number[ROWS];
     const size_t stretch = packets->stretches++;
-    if (channels < LEAST || rows <= LAGS || (stretch >= EARLY && stretch % EARLY != 0))
+    if (rows <= LAGS || (stretch >= EARLY && stretch % EARLY != 0))
         return;
     number_rows(channels, column, rows, columns, first, number);
-    for (size_t lag = LEAST; lag <= LAGS; lag++) {
+    for (size_t lag = 1; lag <= LAGS; lag++) {
         const size_t equal = count_equal(rows, number, lag);
         packets->equal[lag] += equal;
-        packets->again[lag] += equal < lag ? 0 : count_again(rows, number, lag);
+        packets->again[lag] += equal < lag || lag < LEAST ? 0 : count_again(rows, number, lag);
+        if (equal > 0)
+            count_agreement(rows, number, lag, &packets->behind[lag], &packets->on[lag]);
     }
     packets->rows += rows - LAGS;
 }
@@ -93,12 +101,21 @@ static double upper_quarter(const imki_packets *packets)
     return (double)least / (double)packets->rows;
 }
 
-void imki_packets_tell(const imki_packets *packets, const char *name, imk_findings *findings)
+double imki_packets_agreement(const imki_packets *packets)
+{
+    double most = 0;
+    for (size_t lag = 1; lag <= LAGS; lag++)
+        most = fmax(most, ((double)packets->on[lag] + 1) / ((double)packets->behind[lag] + 2));
+    return most;
+}
+
+void imki_packets_tell(const imki_packets *packets, size_t channels, const char *name,
+                       imk_findings *findings)
 {
     size_t most = LEAST;
     for (size_t lag = LEAST; lag <= LAGS; lag++)
         most = packets->again[lag] > packets->again[most] ? lag : most;
-    if (packets->rows < ROWS_LEAST)
+    if (channels < LEAST || packets->rows < ROWS_LEAST)
         return;
     const double share = (double)packets->again[most] / (double)packets->rows;
     const double by_chance = (double)most * pow(upper_quarter(packets), (double)most);

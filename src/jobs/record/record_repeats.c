@@ -47,6 +47,8 @@ void imki_repeats_start(imki_repeats *r, size_t count, const int *channel,
                         const imk_log_column *columns)
 {
     memset(r, 0, sizeof *r);
+    for (int k = 0; k < 2; k++)
+        imki_replay_start(&r->sensor[k].replay);
     for (size_t c = 0; c < count; c++) {
         r->others = r->others || columns[channel[c]].quantity == IMK_QUANTITY_OTHER;
         const bool accel = columns[channel[c]].quantity == IMK_QUANTITY_SPECIFIC_FORCE;
@@ -131,9 +133,13 @@ static void add_rows(imki_repeat_counts *s, size_t rows, double *const *columns,
 
 void imki_repeats_add(imki_repeats *r, size_t rows, double *const *columns)
 {
-    for (int k = 0; k < 2; k++)
-        for (size_t first = 0; r->sensor[k].channels > 0 && first + FAR < rows; first += ROWS)
-            add_rows(&r->sensor[k], rows - first < ROWS ? rows - first : ROWS, columns, first);
+    for (int k = 0; k < 2; k++) {
+        imki_repeat_counts *s = &r->sensor[k];
+        for (size_t first = 0; s->channels > 0 && first + FAR < rows; first += ROWS)
+            add_rows(s, rows - first < ROWS ? rows - first : ROWS, columns, first);
+        if (s->channels > 0)
+            imki_replay_add(&s->replay, s->channels, s->column, rows, columns);
+    }
 }
 
 /* Share of rows equal on all axes if a share h of them is held. */
@@ -236,13 +242,15 @@ static void tell_copies(const imki_repeat_counts *s, const imk_log_column *colum
         }
 }
 
-void imki_repeats_tell(const imki_repeats *r, const imk_log_column *columns, double dt,
+void imki_repeats_tell(imki_repeats *r, const imk_log_column *columns, double dt,
                        imk_findings *findings)
 {
     for (int k = 0; k < 2; k++) {
+        imki_repeat_counts *s = &r->sensor[k];
         const char *name = k == 1 ? "accel" : r->others ? "columns" : "gyro";
-        tell_sensor(&r->sensor[k], name, dt, findings);
-        imki_packets_tell(&r->sensor[k].packets, name, findings);
-        tell_copies(&r->sensor[k], columns, findings);
+        tell_sensor(s, name, dt, findings);
+        imki_packets_tell(&s->packets, s->channels, name, findings);
+        imki_replay_tell(&s->replay, imki_packets_agreement(&s->packets), name, dt, findings);
+        tell_copies(s, columns, findings);
     }
 }

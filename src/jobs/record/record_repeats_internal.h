@@ -4,6 +4,7 @@
 #define IMUKI_RECORD_REPEATS_INTERNAL_H
 
 #include "record_packets_internal.h"
+#include "record_replay_internal.h"
 
 #include "imukit/job.h"
 #include "imukit/record.h"
@@ -22,6 +23,7 @@ typedef struct imki_repeat_counts {
     /* sums of products of the steps from row to row, of the first channels */
     double product[IMKI_REPEAT_AXES][IMKI_REPEAT_AXES];
     imki_packets packets;
+    imki_replay replay;
 } imki_repeat_counts;
 
 typedef struct imki_repeats {
@@ -34,10 +36,10 @@ void imki_repeats_start(imki_repeats *repeats, size_t count, const int *channel,
                         const imk_log_column *columns);
 /* Count in some rows of the log, one array for each column. */
 void imki_repeats_add(imki_repeats *repeats, size_t rows, double *const *columns);
-/* Tell of sensors that are slower than the log, of packets that are written again, and of columns
- * that are copies.
+/* Tell of sensors that are slower than the log, of rows that are written again, and of columns that
+ * are copies.
  * @param columns  of the log  @param dt  of the log [s] */
-void imki_repeats_tell(const imki_repeats *repeats, const imk_log_column *columns, double dt,
+void imki_repeats_tell(imki_repeats *repeats, const imk_log_column *columns, double dt,
                        imk_findings *findings);
 
 #endif

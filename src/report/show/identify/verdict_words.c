@@ -87,6 +87,7 @@ static const struct words {
     {"gyro_size", "the numbers of %s are no gyro's at rest: a wrong unit, or the sensor turned",
      "Numbers that no gyro at rest has: %s."},
     {"packets", "rows are written twice in place of others", NULL},
+    {"replayed", "a part of the log is written a second time", NULL},
     {"copy", "a column is the copy of another", NULL},
     {"follows", "a column is computed from another", NULL},
     {"correlated", "axes share their noise", NULL},
