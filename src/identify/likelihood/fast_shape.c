@@ -301,7 +301,7 @@ static void temper(imki_joint_fit *j)
         for (size_t i = first; i < end; i++)
             mean += square[i] / (double)(end - first);
         if (mean > DISPERSED)
-            bands->degrees[b] /= mean;
+            imki_bands_weigh(bands, b, 1 / mean);
     }
     imki_joint_fit_maximise(j);
 }

@@ -199,9 +199,17 @@ bool imki_identification_is_finite(const imk_identification *result)
     return sum == 0;
 }
 
+bool imki_identification_is_a_model(const imk_identification *result, bool crowded)
+{
+    const bool nowhere = !(result->valid_from < HUGE_VAL);
+    const bool white = result->term[IMK_NOISE_WHITE].present;
+    return imki_identification_is_finite(result) && (white || !(nowhere || crowded));
+}
+
 static void find_terms(imki_work *w, imk_identification *found)
 {
     w->line_count = 0;
+    w->crowded = false;
     imki_identify_transform(w);
     if (w->settings->shape)
         imki_identify_lines(w, found);
@@ -249,7 +257,7 @@ imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
         imki_missing_draw(w->missing, w->samples);
     imki_identify_assess(w, &found);
     imki_identification_rescale(&found, 1 / w->scale);
-    if (!imki_identification_is_finite(&found))
+    if (!imki_identification_is_a_model(&found, w->crowded))
         return imk_error_set(error, IMK_ERROR_NO_CONVERGENCE, NULL, "no noise in the record",
                              "a record of a real sensor: this one is smooth or too regular");
     *result = found;

@@ -106,6 +106,9 @@ void imki_bands_build(imki_bands *bands, size_t n, double dt, const double *coef
                       const double *cumulative, size_t line_count, const imki_line *lines,
                       size_t resonance_count, const imk_resonance *resonances);
 
+/* Give a band so many times its weight in the likelihood. */
+void imki_bands_weigh(imki_bands *bands, size_t b, double factor);
+
 /* Spectra of unit resonances and of filtered white noise of unit density at the bands. */
 void imki_resonance_shape(double frequency, double q, const imki_bands *bands, double *shape);
 void imki_filter_shape(imk_low_pass filter, const imki_bands *bands, double *shape);
@@ -139,14 +142,26 @@ enum { IMKI_HELD_NONE = -1, IMKI_HELD_RAMP = -2 };
 /* spectral_lines.c */
 /* @param squares  squares averaged in each coefficient's power: 1 for a whole record */
 size_t imki_lines_find(size_t n, const double *cumulative, double squares, imki_line *lines);
-/* Fit and subtract a sinusoid whose frequency is near `frequency`; false, and nothing subtracted,
- * when it holds less than 0.6 of the line's variance. */
-bool imki_sinusoid_remove(size_t n, double dt, double frequency, double variance, double *samples,
-                          imk_sinusoid *sinusoid);
-/* The coefficients a line spreads over, skirts included. */
+/* Do the skirts of a line reach more than half-way to frequency 0? */
+bool imki_line_is_strong(const imki_line *line);
+/* The coefficients a line spreads over, skirts included, but of a strong one no more than half-way
+ * to frequency 0. */
 imki_line imki_line_widen(const imki_line *line, size_t n);
 /* Variance of a line: its power in excess of its surroundings'. */
 double imki_line_variance(const imki_line *line, size_t n, double dt, const double *cumulative);
+
+/* sinusoids.c: a tone c cos + s sin of 2 pi cycles (i - (n - 1)/2) at sample i. */
+typedef struct imki_sinusoid {
+    double cycles; /* per sample */
+    double c, s;
+} imki_sinusoid;
+double imki_sinusoid_amplitude(const imki_sinusoid *tone);
+/* Fit and subtract a tone near `cycles`; false, and nothing subtracted, when it holds less than 0.6
+ * of the line's variance. */
+bool imki_sinusoid_remove(size_t n, double cycles, double variance, double *samples,
+                          imki_sinusoid *tone);
+/* Tones that were subtracted, fitted again together; the samples are what they leave. */
+void imki_sinusoids_refine(size_t n, double *samples, size_t count, imki_sinusoid *tones);
 
 /* spectral_shape.c: fits a resonance from a start; false when the line, of the given variance, is
  * not shaped like one. */
@@ -216,6 +231,7 @@ typedef struct imki_work {
     imki_alternatives *alternatives, *spare; /* of the search that chose the terms; of another */
     size_t line_count;
     imki_line lines[IMKI_LINES_MAX]; /* left out of the fit */
+    bool crowded;                    /* more lines were left when IMKI_LINES_MAX tones were out */
     struct imki_missing *missing;    /* missing_internal.h; NULL: none are */
     bool bands_given;                /* several records: the bands are there already */
     /* A long record instead comes as the spectra of two scales and its Allan deviations,
@@ -315,5 +331,8 @@ imk_status imki_identify_check(const imk_identify_settings *settings, imk_error 
 /* Strengths of everything random, and of the ramp, times a factor. */
 void imki_identification_rescale(imk_identification *result, double factor);
 bool imki_identification_is_finite(const imk_identification *result);
+/* Finite, and a description of the record: not one that finds no white noise and agrees with the
+ * record at no averaging time, or finds none under a comb of more tones than it takes out. */
+bool imki_identification_is_a_model(const imk_identification *result, bool crowded);
 
 #endif

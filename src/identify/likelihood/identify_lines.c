@@ -45,6 +45,16 @@ static double power_between(const imki_work *w, size_t from, size_t to)
     return power;
 }
 
+/* Variance that a tone must explain: that of the line, but of its skirts no more than eight
+ * coefficients, which hold 0.97 of a tone. Farther out there may be another one, or its skirts. */
+static double variance_near(const imki_work *w, const imki_line *line, size_t peak)
+{
+    const size_t reach = 8;
+    const size_t first = line->first + reach < peak ? line->first : peak - reach;
+    const size_t last = line->last > peak + reach ? line->last : peak + reach;
+    return fmin(variance_of(w, line), power_between(w, first, last) / (double)w->n);
+}
+
 /* Is a line a tone? The skirts of a strong one make a wide line of it, but five coefficients hold
  * nine tenths of its power, many times that of those on either side. */
 static bool is_tone(const imki_work *w, const imki_line *line)
@@ -54,22 +64,74 @@ static bool is_tone(const imki_work *w, const imki_line *line)
     if (line->last - line->first < 16)
         return true; /* the fit will tell */
     const double power = power_between(w, peak - 2, peak + 2);
-    return power > share * variance_of(w, line) * (double)w->n &&
+    return power > share * variance_near(w, line, peak) * (double)w->n &&
            power_between(w, peak - 8, peak - 3) < skirt * power &&
            power_between(w, peak + 3, peak + 8) < skirt * power;
 }
 
-/* Subtract the tones. */
-static void remove_tones(imki_work *w, size_t count, const imki_line *lines,
-                         imk_identification *result)
+/* Is it beside a tone that was subtracted? Then it is what that one leaves because its frequency or
+ * its amplitude wanders, and no further tone. */
+static bool is_beside(size_t n, double cycles, size_t count, const imki_sinusoid *tones)
 {
-    const double step_hz = 1 / (2 * (double)w->n * w->settings->dt);
+    const double apart = 3 / (double)n;
     for (size_t i = 0; i < count; i++)
-        if (is_tone(w, &lines[i]) && result->sinusoid_count < IMK_TERMS_MAX &&
-            imki_sinusoid_remove(w->n, w->settings->dt, (double)peak_of(w, &lines[i]) * step_hz,
-                                 variance_of(w, &lines[i]), w->samples,
-                                 &result->sinusoid[result->sinusoid_count]))
-            result->sinusoid_count++;
+        if (fabs(cycles - tones[i].cycles) < apart)
+            return true;
+    return false;
+}
+
+/* Subtract the tones among the lines; returns how many there are then. */
+static size_t subtract_tones(imki_work *w, size_t line_count, const imki_line *lines, size_t count,
+                             imki_sinusoid *tones)
+{
+    for (size_t i = 0; i < line_count && count < IMKI_LINES_MAX; i++) {
+        const size_t peak = peak_of(w, &lines[i]);
+        const double cycles = (double)peak / (2 * (double)w->n);
+        if (is_tone(w, &lines[i]) && !is_beside(w->n, cycles, count, tones) &&
+            imki_sinusoid_remove(w->n, cycles, variance_near(w, &lines[i], peak), w->samples,
+                                 &tones[count]))
+            count++;
+    }
+    return count;
+}
+
+/* The strongest tones into the result, the strongest first. */
+static void store_tones(const imki_work *w, size_t count, const imki_sinusoid *tones,
+                        imk_identification *result)
+{
+    bool stored[IMKI_LINES_MAX] = {false};
+    while (result->sinusoid_count < IMK_TERMS_MAX && (size_t)result->sinusoid_count < count) {
+        size_t next = count;
+        for (size_t i = 0; i < count; i++)
+            if (!stored[i] && (next == count || imki_sinusoid_amplitude(&tones[i]) >
+                                                    imki_sinusoid_amplitude(&tones[next])))
+                next = i;
+        stored[next] = true;
+        result->sinusoid[result->sinusoid_count++] = (imk_sinusoid){
+            imki_sinusoid_amplitude(&tones[next]), tones[next].cycles / w->settings->dt};
+    }
+}
+
+/* Finds lines, and subtracts the tones among them until what they leave holds no more. The skirts
+ * of a strong tone hide others and spoil the estimates of those that are seen, so all are estimated
+ * again together each time. Returns how many lines are left. */
+static size_t take_tones(imki_work *w, imki_line *lines, imk_identification *result)
+{
+    enum { ROUNDS = 8 };
+    imki_sinusoid tones[IMKI_LINES_MAX];
+    size_t count = 0, lines_left = imki_lines_find(w->n, w->cumulative, 1, lines);
+    for (int round = 0; round < ROUNDS; round++) {
+        const size_t before = count;
+        count = subtract_tones(w, lines_left, lines, count, tones);
+        if (count == before)
+            break;
+        imki_sinusoids_refine(w->n, w->samples, count, tones);
+        imki_identify_transform(w);
+        lines_left = imki_lines_find(w->n, w->cumulative, 1, lines);
+    }
+    w->crowded = count == IMKI_LINES_MAX && lines_left > 0;
+    store_tones(w, count, tones, result);
+    return lines_left;
 }
 
 bool imki_line_describe(const imki_line *line, size_t n, double dt, const double *cumulative,
@@ -88,7 +150,7 @@ bool imki_line_describe(const imki_line *line, size_t n, double dt, const double
         r = (imk_resonance){sqrt(variance), frequency, fmax(1, centre / width)};
         resonant = r.frequency > narrowest * r.q;
     }
-    const bool narrow = !resonant || r.q > IMKI_NARROW;
+    const bool narrow = !resonant || (r.q > IMKI_NARROW && !imki_line_is_strong(line));
     if (resonant) {
         r.sigma = narrow ? sqrt(variance) : r.sigma;
         result->resonance[result->resonance_count++] = r;
@@ -100,18 +162,14 @@ bool imki_line_describe(const imki_line *line, size_t n, double dt, const double
 
 /* What a line is: a tone is subtracted as a sinusoid; what is shaped like a resonance is one; a
  * line that is neither, such as a tone whose frequency wanders, stands in the model as a sinusoid
- * of its power. Only wide resonances take part in the fit: narrow lines are left out of it, and
- * their power is what is found above their surroundings, whatever their exact shape. */
+ * of its power. Only wide resonances take part in the fit, and those whose skirts reach far: other
+ * narrow lines are left out of it, and their power is what is found above their surroundings,
+ * whatever their exact shape. */
 void imki_identify_lines(imki_work *w, imk_identification *result)
 {
     const double dt = w->settings->dt, step_hz = 1 / (2 * (double)w->n * dt);
     imki_line lines[IMKI_LINES_MAX];
-    size_t count = imki_lines_find(w->n, w->cumulative, 1, lines);
-    remove_tones(w, count, lines, result);
-    if (result->sinusoid_count > 0) {
-        imki_identify_transform(w);
-        count = imki_lines_find(w->n, w->cumulative, 1, lines);
-    }
+    const size_t count = take_tones(w, lines, result);
     for (size_t i = 0; i < count; i++)
         if (imki_line_describe(&lines[i], w->n, dt, w->cumulative, centre_of(&lines[i]) * step_hz,
                                0, result))

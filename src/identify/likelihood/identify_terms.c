@@ -6,6 +6,15 @@
 #include <math.h>
 #include <string.h>
 
+/* Wide resonances, and narrow ones that were not left out of the bands. */
+static bool takes_part(const imki_bands *bands, const imk_resonance *r)
+{
+    for (size_t b = 0; b < bands->count; b++)
+        if (fabs(bands->frequency[b] - r->frequency) < r->frequency / r->q)
+            return true;
+    return r->q <= IMKI_NARROW;
+}
+
 static void set_templates(imki_work *w, const imk_identification *result)
 {
     imki_fit *fit = w->fit;
@@ -19,7 +28,7 @@ static void set_templates(imki_work *w, const imk_identification *result)
     for (size_t j = IMK_NOISE_WHITE; j < fit->templates; j++)
         fit->active[j] = j <= IMK_NOISE_RANDOM_WALK ||
                          (j >= IMKI_FIRST_RESONANCE &&
-                          result->resonance[j - IMKI_FIRST_RESONANCE].q <= IMKI_NARROW);
+                          takes_part(bands, &result->resonance[j - IMKI_FIRST_RESONANCE]));
     for (int r = 0; r < result->resonance_count; r++)
         fit->amount[IMKI_FIRST_RESONANCE + r] =
             result->resonance[r].sigma * result->resonance[r].sigma;

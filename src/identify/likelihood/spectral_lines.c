@@ -123,11 +123,28 @@ size_t imki_lines_find(size_t n, const double *cumulative, double squares, imki_
 
 /* The skirts of a Lorentzian peak `ratio` times its surroundings fall to a twentieth of these at
  * width/2 sqrt(20 ratio) from it. */
+static double skirts(const imki_line *line)
+{
+    const double width = (double)(line->last - line->first + 1);
+    return width * fmax(2, 0.5 * sqrt(20 * line->ratio));
+}
+
+static size_t farthest(const imki_line *line)
+{
+    return line->first / 2;
+}
+
+bool imki_line_is_strong(const imki_line *line)
+{
+    return skirts(line) > (double)farthest(line);
+}
+
+/* No farther than half-way to frequency 0: without the lowest coefficients nothing would tell the
+ * slow terms, and without nearly all others nothing the white noise. */
 imki_line imki_line_widen(const imki_line *line, size_t n)
 {
     imki_line wide = *line;
-    const double width = (double)(line->last - line->first + 1);
-    const size_t reach = (size_t)(width * fmax(2, 0.5 * sqrt(20 * line->ratio)));
+    const size_t reach = imki_line_is_strong(line) ? farthest(line) : (size_t)skirts(line);
     wide.first = line->first > reach ? line->first - reach : 1;
     wide.last = line->last + reach < n ? line->last + reach : n - 1;
     return wide;
@@ -148,65 +165,4 @@ double imki_line_variance(const imki_line *line, size_t n, double dt, const doub
         level = fmin(level, mean_power(cumulative, wide.last + 1, above));
     const double excess = mean_power(cumulative, wide.first, wide.last + 1) - level;
     return excess > 0 ? excess * (double)(wide.last - wide.first + 1) / ((double)n * dt) : 0;
-}
-
-/* Projections of the record on cos and sin of a frequency, by a rotating phasor that is set anew
- * every 256 samples so that its rounding does not grow. */
-static void project(size_t n, const double *samples, double cycles, double *c, double *s)
-{
-    const double turn = 6.283185307179586, step = turn * cycles;
-    const double cos_step = cos(step), sin_step = sin(step);
-    *c = *s = 0;
-    for (size_t begin = 0; begin < n; begin += 256) {
-        const double turns = cycles * (double)begin, phase = turn * (turns - floor(turns));
-        double re = cos(phase), im = sin(phase);
-        const size_t end = begin + 256 < n ? begin + 256 : n;
-        for (size_t i = begin; i < end; i++) {
-            *c += samples[i] * re;
-            *s += samples[i] * im;
-            const double next = re * cos_step - im * sin_step;
-            im = re * sin_step + im * cos_step;
-            re = next;
-        }
-    }
-}
-
-typedef struct tone_search {
-    size_t n;
-    const double *samples;
-} tone_search;
-
-static double projected_power(void *context, double cycles)
-{
-    const tone_search *s = context;
-    double c, d;
-    project(s->n, s->samples, cycles, &c, &d);
-    return c * c + d * d;
-}
-
-/* The periodogram's peak near the frequency, then least squares (the two projections are orthogonal
- * to 1/n at these frequencies). */
-bool imki_sinusoid_remove(size_t n, double dt, double frequency, double variance, double *samples,
-                          imk_sinusoid *sinusoid)
-{
-    tone_search search = {n, samples};
-    const double start = frequency * dt, reach = 0.75 / (double)n;
-    const double cycles = imki_peak(projected_power, &search, start - reach, start + reach, 24);
-    const double turn = 6.283185307179586;
-    double c, s;
-    project(n, samples, cycles, &c, &s);
-    c *= 2 / (double)n;
-    s *= 2 / (double)n;
-    const double power = 0.5 * (c * c + s * s);
-    double all = 0;
-    for (size_t i = 0; i < n; i++)
-        all += samples[i] * samples[i] / (double)n;
-    if (!(power > 0.6 * variance && all - power > 1e-9 * all))
-        return false;
-    for (size_t i = 0; i < n; i++) {
-        const double turns = cycles * (double)i, phase = turn * (turns - floor(turns));
-        samples[i] -= c * cos(phase) + s * sin(phase);
-    }
-    *sinusoid = (imk_sinusoid){.amplitude = sqrt(c * c + s * s), .frequency = cycles / dt};
-    return true;
 }

@@ -192,7 +192,7 @@ imk_status imk_identify_record_finish(imk_identify_record *r, const imk_identify
     rescale_points(r);
     imk_noise_map_end(r->map);
     imk_noise_map_rescale(r->map, 1 / r->scale);
-    if (!imki_identification_is_finite(&found))
+    if (!imki_identification_is_a_model(&found, false))
         return imk_error_set(error, IMK_ERROR_NO_CONVERGENCE, NULL, "no noise in the record",
                              "a record of a real sensor: this one is smooth or too regular");
     *result = found;

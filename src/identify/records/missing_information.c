@@ -58,7 +58,7 @@ void imki_missing_weigh(imki_missing *m, imki_bands *bands)
         const size_t k = (size_t)(f * 2 * (double)bands->n * bands->dt + 0.5);
         const double a = 1 - imki_missing_between(m, m->lost, &at, k);
         m->whole[b] = bands->degrees[b];
-        bands->degrees[b] *= a * (a + (1 - a) * near);
+        imki_bands_weigh(bands, b, a * (a + (1 - a) * near));
         if (b < bands->singles)
             bands->ramp[b] = m->ramp[b + 1] / sqrt(a);
     }

@@ -137,7 +137,7 @@ static size_t find_line(imki_level_noise *noise)
 void imki_level_noise_take_tones(imki_level_noise *noise, double *mean)
 {
     enum { TONES = 4 };
-    imk_sinusoid tone;
+    imki_sinusoid tone;
     double level = 0;
     for (size_t i = 0; i < noise->n; i++)
         level += mean[i] / (double)noise->n;
@@ -146,9 +146,9 @@ void imki_level_noise_take_tones(imki_level_noise *noise, double *mean)
     for (int k = 0; k < TONES; k++) {
         imki_level_noise_transform(noise, mean);
         const size_t line = find_line(noise);
-        const double frequency = (double)line / (2 * (double)noise->n);
+        const double cycles = (double)line / (2 * (double)noise->n);
         const double power = noise->coefficient[line] * noise->coefficient[line] / (double)noise->n;
-        if (line == 0 || !imki_sinusoid_remove(noise->n, 1, frequency, power, mean, &tone))
+        if (line == 0 || !imki_sinusoid_remove(noise->n, cycles, power, mean, &tone))
             break;
     }
     for (size_t i = 0; i < noise->n; i++)

@@ -126,6 +126,18 @@ void imki_bands_build(imki_bands *bands, size_t n, double dt, const double *coef
     imki_bands_add(bands, &whole, resonance_count, resonances);
 }
 
+/* The sums for the ends are sums over coefficients like the degrees: with less weight on these
+ * alone, the ends would explain more than the power that there is, and the likelihood have no top.
+ */
+void imki_bands_weigh(imki_bands *bands, size_t b, double factor)
+{
+    bands->degrees[b] *= factor;
+    for (size_t parity = 0; parity < 2; parity++) {
+        bands->end_product[parity][b] *= factor;
+        bands->end_square[parity][b] *= factor;
+    }
+}
+
 static void arma_shape(const imk_arma *arma, const imki_bands *bands, double *shape)
 {
     for (size_t b = 0; b < bands->count; b++)
