@@ -111,6 +111,22 @@ def despiked(record, rng, strength):
         column.values = np.where(far, median, column.values)
 
 
+def averaged(record, rng, strength):
+    """Each value is the mean of so many samples."""
+    for column in record.columns:
+        sums = np.cumsum(np.insert(column.values, 0, np.full(strength, column.values[0])))
+        column.values = (sums[strength:] - sums[:-strength]) / strength
+
+
+def smoothed(record, rng, strength):
+    """Each value goes this part of the way from the one before to the sample."""
+    for column in record.columns:
+        level = column.values[0]
+        for i, value in enumerate(column.values):
+            level += strength * (value - level)
+            column.values[i] = level
+
+
 def zeroed(record, rng, strength):
     """The mean of each stretch of `strength` seconds becomes that of the log."""
     length = int(strength / record.dt)
@@ -543,6 +559,10 @@ FAULTS = [
           "a stage that saturates softly"),
     Fault("despiked", "4", "nb_30min", (3, 2.5, 2), "sigma", despiked,
           "a filter that replaces spikes by a median"),
+    Fault("averaged", "6", "nb_30min", (2, 4, 8), "samples", averaged,
+          "the driver writes a moving average"),
+    Fault("smoothed", "6", "nb_30min", (0.7, 0.4, 0.1), "of the way", smoothed,
+          "the driver smooths exponentially"),
     Fault("zeroed", "8", "nb_30min", (60, 20, 5), "s", zeroed,
           "an automatic zero, which takes the slow noise away"),
     Fault("drop_by_value", "4", "nb_30min", (3, 2.5, 2), "sigma", drop_by_value,

@@ -96,6 +96,9 @@ typedef struct imk_identification {
     double log_likelihood;
     double rounding;    /**< white noise of rounding to these steps after the filter [unit of N]; 0
                            when none is detected: then the white noise holds it */
+    double plateau;     /**< white noise together with what resonances have at frequency 0, if some
+                           were no lines [unit of N]: behind a digital filter they stand for its
+                           shape, and this is the sensor's; else 0 */
     size_t missing;     /**< missing samples between the first and the last sample present */
     double largest_gap; /**< longest run of missing samples [s] */
     int rounds; /**< iterations between missing samples and spectrum; 0: no sample is missing */

@@ -204,6 +204,24 @@ static void join_without_rest(imki_work *w, imk_identification *result, double d
     join_set(w, result, drop);
 }
 
+/* Where resonances are needed that were no lines, they all describe what the filter leaves, as
+ * behind a moving average. What they have at frequency 0 is then white noise that went through it.
+ */
+void imki_intervals_join_shape(const imki_work *w, imk_identification *result)
+{
+    const imki_fit *fit = w->fit;
+    imk_estimate *white = &result->term[IMK_NOISE_WHITE];
+    double low = 0;
+    for (int r = 0; r < result->resonance_count; r++) {
+        const size_t slot = IMKI_FIRST_RESONANCE + (size_t)r;
+        low += fit->active[slot] ? fit->amount[slot] * fit->shape[slot][0] : 0;
+    }
+    if (result->resonance_count <= w->resonant_lines)
+        return;
+    white->upper = sqrt(white->upper * white->upper + low);
+    result->plateau = sqrt(white->value * white->value + low);
+}
+
 void imki_intervals_join(imki_work *w, imk_identification *result, double drop)
 {
     imki_fit *fit = w->fit;

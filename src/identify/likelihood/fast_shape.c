@@ -154,6 +154,7 @@ static void drop(imki_joint_fit *j, size_t index)
         fit->amount[slot] = fit->amount[slot + 1];
     }
     list[count] = (imk_resonance){0, 0, 0};
+    j->w->resonant_lines -= (int)index < j->w->resonant_lines;
     fit->active[IMKI_FIRST_RESONANCE + count] = false;
     fit->amount[IMKI_FIRST_RESONANCE + count] = 0;
     fit->templates = IMKI_FIRST_RESONANCE + count;

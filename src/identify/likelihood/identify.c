@@ -187,6 +187,7 @@ void imki_identification_rescale(imk_identification *result, double factor)
         result->resonance[i].sigma *= factor;
     result->minimum_floor *= factor;
     result->rounding *= factor;
+    result->plateau *= factor;
 }
 
 bool imki_identification_is_finite(const imk_identification *result)

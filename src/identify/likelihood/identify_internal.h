@@ -232,6 +232,8 @@ typedef struct imki_work {
     size_t line_count;
     imki_line lines[IMKI_LINES_MAX]; /* left out of the fit */
     bool crowded;                    /* more lines were left when IMKI_LINES_MAX tones were out */
+    int resonant_lines;              /* first resonances of the result that were lines: those behind
+                                      * them may stand for any shape */
     struct imki_missing *missing;    /* missing_internal.h; NULL: none are */
     bool bands_given;                /* several records: the bands are there already */
     /* A long record instead comes as the spectra of two scales and its Allan deviations,
@@ -281,6 +283,9 @@ void imki_quantization_switch(imki_work *w);
 /* alternative_intervals.c: intervals that hold for the other sets of terms, too, that explain the
  * record about as well; the fit is left as it was. */
 void imki_intervals_join(imki_work *w, imk_identification *result, double drop);
+/* The interval of white noise covers what resonances that stand for the filter's shape have of it.
+ */
+void imki_intervals_join_shape(const imki_work *w, imk_identification *result);
 
 /* fast_shape.c: fits the filter and the wide resonances jointly with all amounts, and adds the
  * resonances that the residuals ask for; returns how many. Uses `trial` and `chosen`. */

@@ -166,6 +166,7 @@ void imki_identify_intervals(imki_work *w, imk_identification *result)
     const bool white_alone = is_undetermined(&result->term[IMK_NOISE_WHITE]);
     imki_intervals_join(w, result, drop);
     imki_identify_widen(w, result);
+    imki_intervals_join_shape(w, result);
     const bool ambiguous = !white_alone && (result->ambiguous >> IMK_NOISE_WHITE & 1);
     if ((is_undetermined(&result->term[IMK_NOISE_WHITE]) && !ambiguous) ||
         is_undetermined(&result->term[IMK_NOISE_QUANTIZATION]))

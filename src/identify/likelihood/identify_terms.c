@@ -61,6 +61,7 @@ static void fit_fast_end(imki_work *w, imk_identification *result, double needed
     try_quantization(w, needed);
     if (w->settings->shape) {
         result->filter = imki_filter_find(w->fit, w->bands);
+        w->resonant_lines = result->resonance_count;
         imki_fast_shape_refine(w, result);
     }
     const bool shaped = result->filter.bandwidth > 0 || result->resonance_count > 0;

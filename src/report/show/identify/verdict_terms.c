@@ -128,10 +128,6 @@ static bool find_undetermined(const imk_identify_log *log, size_t channel, imki_
     return true;
 }
 
-/* White noise N behind a low-pass filter of time constant T has the spectrum of a Gauss-Markov term
- * with 2 sigma^2 T = N^2. A sensor without white noise, but with such a term of a few samples, is
- * more likely one with a filter; so is one with a term that is not certain and a tenth of N^2
- * large. */
 /* Slow fluctuations that are larger than those of any sensor at rest: 0.3 deg/s are ten times the
  * bias instability of the poorest gyros, 5 mg that of accelerometers. */
 static bool find_unrest(const imk_identify_log *log, size_t channel, imki_text *detail)
@@ -152,29 +148,47 @@ static bool find_unrest(const imk_identify_log *log, size_t channel, imki_text *
     return false;
 }
 
-static bool find_behind_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
+/* White noise N behind a low-pass filter of time constant T has the spectrum of a Gauss-Markov term
+ * with 2 sigma^2 T = N^2. A sensor without white noise, but with such a term of a few samples, is
+ * more likely one with a filter; so is one with a term that is not certain and a tenth of N^2
+ * large. Beside white noise, resonances without a filter leave such a term over themselves. The
+ * time constant; 0: there is no such term. */
+static double time_constant_of(const imk_identification *r, double dt, double *white)
 {
     const double few = 10, many = 1000, matters = 0.1; /* many: no sensor is without white noise */
-    const imk_identification *r = &log->result[channel];
     const imk_estimate *n = &r->term[IMK_NOISE_WHITE];
-    const double white = n->present ? n->value : 0;
-    const imk_log_column *column = imk_even_record_column(&log->record, channel);
-    const imk_unit unit = imk_channel_term(column, IMK_NOISE_WHITE).unit;
-    const bool alone = r->resonance_count == 0 || r->filter.bandwidth > 0;
+    const bool alone = r->resonance_count == 0 || r->filter.bandwidth > 0 || !n->present;
+    *white = n->present ? n->value : 0;
     for (int i = 0; i < r->gauss_markov_count && alone; i++) {
         const imk_estimate *sigma = &r->gauss_markov[i].sigma;
         const double time = r->gauss_markov[i].correlation_time.value;
         const double behind = 2 * sigma->value * sigma->value * time;
         const bool certain = n->present && sigma->lower > 0;
-        const double limit = (n->present ? few : many) * log->record.dt;
-        if (time < limit && !certain && behind > matters * white * white) {
-            imki_text_add(detail, "%.3g %s behind a filter of %.2g Hz",
-                          sqrt(behind + white * white) / unit.scale, unit.text,
-                          1 / (6.283185307179586 * time));
-            return true;
+        const double limit = (n->present ? few : many) * dt;
+        if (time < limit && !certain && behind > matters * *white * *white) {
+            *white = sqrt(behind + *white * *white);
+            return time;
         }
     }
-    return false;
+    return 0;
+}
+
+/* The same of resonances that stand for the shape of a filter. */
+static bool find_behind_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const double matters = 1.01;
+    const imk_identification *r = &log->result[channel];
+    const imk_log_column *column = imk_even_record_column(&log->record, channel);
+    const imk_unit unit = imk_channel_term(column, IMK_NOISE_WHITE).unit;
+    double white;
+    const double time = time_constant_of(r, log->record.dt, &white);
+    if (time > 0)
+        imki_text_add(detail, "%.3g %s behind a filter of %.2g Hz", white / unit.scale, unit.text,
+                      1 / (6.283185307179586 * time));
+    else if (r->plateau > matters * white)
+        imki_text_add(detail, "%.3g %s behind a digital filter", r->plateau / unit.scale,
+                      unit.text);
+    return time > 0 || r->plateau > matters * white;
 }
 
 static bool find_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
@@ -205,9 +219,8 @@ static const imki_concern concerns[] = {
      NULL},
     {0, find_behind_filter, 0, IMK_FINDING_WARNING, "behind_filter",
      "a Gauss-Markov term of a few samples, or one without white noise, looks like white noise "
-     "behind a low-pass filter; if the "
-     "sensor or its driver filters, white noise is the first value, and the term is the filter; "
-     "log "
+     "behind a low-pass filter, and so do wide resonances; if the sensor or its driver filters, "
+     "white noise is the first value, and the term or the resonances are the filter; log "
      "unfiltered samples, or several times as many in a second",
      NULL},
     {IMK_VERDICT_UNDETERMINED, find_undetermined, 0, IMK_FINDING_WARNING, "undetermined",

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Behind a digital filter, which is of neither first nor second order, resonances describe the
+ * shape. The interval of white noise covers what these have of it. */
+#include "check.h"
+#include "identify/identify_values.h"
+#include "imukit/noise.h"
+
+enum { N = 60000, TAPS = 5, RUNS = 5 };
+
+typedef struct filter {
+    size_t taps;
+    double tap[TAPS]; /* their sum is 1 */
+} filter;
+
+static const filter moving_average_2 = {2, {0.5, 0.5}};
+static const filter moving_average_4 = {4, {0.25, 0.25, 0.25, 0.25}};
+static const filter binomial = {3, {0.25, 0.5, 0.25}};
+static const filter savitzky_golay = {5, {-3 / 35.0, 12 / 35.0, 17 / 35.0, 12 / 35.0, -3 / 35.0}};
+
+/* White noise of strength 1 at 100 Hz behind the filter. */
+static void make(const filter *f, uint32_t run, double *x)
+{
+    static double white[N + TAPS];
+    imk_random_normals(imk_random_seeded(59), imk_stream(run, 1, 0, 0), 0, N + TAPS, white);
+    for (size_t i = 0; i < N; i++) {
+        x[i] = 0;
+        for (size_t k = 0; k < f->taps; k++)
+            x[i] += 10 * f->tap[k] * white[i + k];
+    }
+}
+
+/* Intervals that hold, of RUNS; that they are narrow is checked. */
+static int count_held(const filter *f)
+{
+    static double x[N];
+    int held = 0;
+    for (uint32_t run = 0; run < RUNS; run++) {
+        make(f, run, x);
+        const imk_identification r = identify_values(true, N, x);
+        const imk_estimate *white = &r.term[IMK_NOISE_WHITE];
+        assert_true(white->present);
+        assert_true(white->upper < 1.2 && white->lower > 0.85);
+        held += white->lower <= 1 && 1 <= white->upper;
+    }
+    return held;
+}
+
+static void test_white_noise(void **state)
+{
+    (void)state;
+    assert_true(count_held(&moving_average_2) >= RUNS - 1);
+    assert_true(count_held(&moving_average_4) >= RUNS - 1);
+    assert_true(count_held(&binomial) >= RUNS - 1);
+    assert_true(count_held(&savitzky_golay) >= RUNS - 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_white_noise)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
