@@ -85,9 +85,11 @@ typedef struct imki_frequent {
 /* Zeros among the noise of some chunks, and values beside them, in chunks of fine steps and of
  * coarse ones. */
 typedef struct imki_zeros {
-    double samples;                    /* of these chunks */
-    double fine, due, variance;        /* zeros, how many are due, variance of their difference */
-    double coarse, above[2], below[2]; /* zeros, and values one and two steps away */
+    double samples;           /* of these chunks */
+    double fine, near, far;   /* zeros, and values up to a quarter, and to half a scale away */
+    double near_due, far_due; /* those two for one step */
+    double weight;            /* of a logarithm's slope from far to near, times near_due */
+    double coarse, above[3], below[3]; /* zeros, and values one, two, three steps away */
 } imki_zeros;
 
 typedef struct imki_counting {

@@ -15,8 +15,10 @@
  *
  *     ln n_0 = (4 (ln n_1 + ln n_-1) - ln n_2 - ln n_-2)/6
  *
- * Steps beyond 1.4 scales are not tested: where the level moves, a mixture of such noise is no
- * parabola, and white noise is doubted for the steps. */
+ * Noise with heavy tails has a peak that is sharper than these: a corner in Laplace's density. Each
+ * side by itself is a straight line there, or with three values a parabola; where this has more
+ * zeros due, it counts. Steps beyond 1.4 scales are not tested: where the level moves, a mixture of
+ * such noise is no parabola, and white noise is doubted for the steps. */
 #include "imukit/elementary.h"
 #include "screener_internal.h"
 
@@ -116,6 +118,31 @@ static size_t most_frequent(imk_screener *s)
     return most;
 }
 
+static void add_coarse(imk_screener *s, double zeros)
+{
+    imki_zeros *z = &s->zeros;
+    z->coarse += zeros;
+    for (int k = 0; k < 3; k++) {
+        const double low = (k + 0.5) * s->step, high = (k + 1.5) * s->step;
+        z->above[k] += count_between(s, low, high);
+        z->below[k] += count_between(s, -high, -low);
+    }
+}
+
+static void add_fine(imk_screener *s)
+{
+    imki_zeros *z = &s->zeros;
+    const double reach = floor(0.5 * s->scale / s->step), half = ceil(0.5 * reach);
+    const double near_end = (half + 0.5) * s->step, end = (reach + 0.5) * s->step;
+    const double near = count_between(s, -near_end, near_end);
+    const double far = count_between(s, -end, end) - near;
+    z->near += near;
+    z->far += far;
+    z->near_due += near / (2 * half);
+    z->far_due += far / (2 * (reach - half));
+    z->weight += near / (2 * half) * (half + 1) / reach;
+}
+
 void imki_screen_zeros(imk_screener *s)
 {
     imki_zeros *z = &s->zeros;
@@ -126,38 +153,58 @@ void imki_screen_zeros(imk_screener *s)
     if (zeros == 0 || !imki_screen_has_noise(s))
         return;
     if (step > 0 && step * 2 * FINE > s->scale) {
-        z->coarse += zeros;
-        for (int k = 0; k < 2; k++) {
-            const double low = (k + 0.5) * step, high = (k + 1.5) * step;
-            z->above[k] += count_between(s, low, high);
-            z->below[k] += count_between(s, -high, -low);
-        }
-        return;
+        add_coarse(s, zeros);
+    } else if (step > 0) {
+        add_fine(s);
+        z->fine += zeros;
+    } else if (most_frequent(s) <= REPEATS) {
+        z->fine += zeros;
     }
-    if (step > 0) {
-        const double reach = floor(0.5 * s->scale / step);
-        const double limit = (reach + 0.5) * step;
-        const double due = count_between(s, -limit, limit) / (2 * reach);
-        z->due += due;
-        z->variance += due + due / (2 * reach);
-    } else if (most_frequent(s) > REPEATS) {
-        return;
+}
+
+/* Those whose number and its variance are higher. */
+static void allow(imki_excess *e, double due, double relative_variance)
+{
+    if (due > e->due) {
+        e->due = due;
+        e->variance = due + due * due * relative_variance;
     }
-    z->fine += zeros;
+}
+
+static void allow_fine(const imki_zeros *z, imki_excess *e)
+{
+    if (!(z->near > 0 && z->far > 0))
+        return;
+    const double w = z->weight / z->near_due, w1 = 1 + w;
+    const double mean = 0.5 * (z->near_due + z->far_due);
+    allow(e, mean, 1 / (z->near + z->far));
+    allow(e, z->near_due * imk_exp(w * imk_ln(z->near_due / z->far_due)),
+          w1 * w1 / z->near + w * w / z->far);
+}
+
+static void allow_coarse(const imki_zeros *z, imki_excess *e)
+{
+    const double *above = z->above, *below = z->below;
+    if (!(fmin(above[0], below[0]) >= ONE_MIN && fmin(above[1], below[1]) >= TWO_MIN))
+        return;
+    double l[3], v[3];
+    for (int k = 0; k < 3; k++) {
+        l[k] = 0.5 * (imk_ln(above[k]) + imk_ln(below[k]));
+        v[k] = 0.25 / above[k] + 0.25 / below[k];
+    }
+    imki_excess here = {.due = 0};
+    allow(&here, imk_exp((4 * l[0] - l[1]) / 3), (16 * v[0] + v[1]) / 9);
+    if (fmin(above[2], below[2]) >= TWO_MIN)
+        allow(&here, imk_exp(3 * l[0] - 3 * l[1] + l[2]), 9 * v[0] + 9 * v[1] + v[2]);
+    e->counted += z->coarse;
+    e->due += here.due;
+    e->variance += here.variance;
 }
 
 double imki_zeros_excess(const imki_zeros *z)
 {
-    const double *above = z->above, *below = z->below;
-    imki_excess e = {z->samples, z->fine, z->due, z->variance};
-    if (fmin(above[0], below[0]) >= ONE_MIN && fmin(above[1], below[1]) >= TWO_MIN) {
-        const double one = imk_ln(above[0]) + imk_ln(below[0]);
-        const double two = imk_ln(above[1]) + imk_ln(below[1]);
-        const double here = imk_exp((4 * one - two) / 6);
-        const double spread = 16 / above[0] + 16 / below[0] + 1 / above[1] + 1 / below[1];
-        e.counted += z->coarse;
-        e.due += here;
-        e.variance += here + here * here * spread / 36;
-    }
+    imki_excess e = {z->samples, z->fine, 0, 0};
+    allow_fine(z, &e);
+    allow_coarse(z, &e);
     return imki_excess_share(&e, least_share, least_factor);
 }

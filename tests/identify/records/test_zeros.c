@@ -112,6 +112,33 @@ static void test_sound(void **state)
     }
 }
 
+/* Noise of Laplace's density, which has a corner where it is densest: x1 x2 + x3 x4 of normal
+ * numbers. Its standard deviation is 1. */
+static void make_laplace(uint64_t seed, double level)
+{
+    static double z[4][N];
+    for (uint32_t k = 0; k < 4; k++)
+        imk_random_normals(imk_random_seeded(seed), imk_stream(k, 1, 0, 0), 0, N, z[k]);
+    for (size_t i = 0; i < N; i++)
+        rate[i] = level + (z[0][i] * z[1][i] + z[2][i] * z[3][i]) / sqrt(2);
+}
+
+/* Nor has rounded noise with heavy tails, of whose values zero is the most frequent. */
+static void test_sound_with_heavy_tails(void **state)
+{
+    (void)state;
+    static const double steps[] = {0.04, 0.1, 0.12, 0.2, 0.3, 0.5, 0.8, 1};
+    for (uint64_t seed = 0; seed < 16; seed++) {
+        make_laplace(seed, 0.05 * (double)(seed % 4));
+        memcpy(clean, rate, sizeof rate);
+        for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
+            memcpy(rate, clean, sizeof rate);
+            round_to(steps[k]);
+            assert_true(screen().zeros == 0);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -119,6 +146,7 @@ int main(void)
         cmocka_unit_test(test_code),
         cmocka_unit_test(test_too_many),
         cmocka_unit_test(test_sound),
+        cmocka_unit_test(test_sound_with_heavy_tails),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
