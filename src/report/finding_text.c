@@ -322,6 +322,11 @@ static const struct message {
     {"calibrate:not_finite",
      "{record}: in {0} of {1} rows a reading or the temperature is not finite, or beyond 1e60, "
      "first in row {2}; these rows, or the hold or step that they interrupt, are left out"},
+    {"calibrate:fill_rows",
+     "{record}: in {0} of {1} rows, first in row {2}, all {name} axes have {3?}the value 0"
+     "{3!}the same values{?}, while the rows before and behind are far from there: a logger wrote "
+     "them where it had no reading, and they change the scale factors by the share of the rows; "
+     "mend the logger and repeat the test"},
     {"axis_gap", "{record} has {name}: calibration needs the axes x, y, z in this order; name the "
                  "columns with --columns"},
     {"turns_without_accel",

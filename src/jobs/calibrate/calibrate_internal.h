@@ -13,6 +13,8 @@ static const char *const imki_sensor_units[IMK_KINDS] = {"rad/s", "m/s^2", "T"};
 
 /* session_record.c: the name of a record without its folders. */
 const char *imki_record_name(const char *path);
+/* fill_rows.c: rows that are no readings, as loggers write them where one was lost. */
+void imki_tell_fill_rows(const imk_test_record *record, imk_findings *findings);
 /* calibrate_set_up.c: the problem, its records not loaded; then what is known before of them. */
 imk_status imki_calibrate_set_up(imk_calibrate_log *b, const imk_procedure *procedure,
                                  imk_error *error);
