@@ -28,6 +28,9 @@ imk_status imki_find_column(imk_calibrate_record *log, const char *name, const c
 imk_status imki_take_reference(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
                                imk_error *error);
 
+/* reference_force.c: whether the forces of columns are specific forces in their unit. */
+void imki_check_reference_force(imk_calibrate_record *log);
+
 /* pose_means.c: how well the means of a table are known, from the columns beside them. */
 imk_status imki_take_means(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
                            imk_error *error);
