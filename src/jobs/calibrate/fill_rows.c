@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-enum { BESIDE = 4, STEPS = 8, SCALE = 4, LEAST = 3, VALUES = 16, FEW_ROWS = 4096 };
+enum { BESIDE = 4, STEPS = 8, SCALE = 4, LEAST = 3, VALUES = 16 };
 
 /* Longer ones may be rests [s]. */
 static const double longest = 0.5;
@@ -111,8 +111,7 @@ void imki_tell_fill_rows(const imk_test_record *record, imk_findings *findings)
     for (int sensor = 0; sensor < 2; sensor++) {
         fill_search s = {.record = record, .sensor = sensor};
         for (int i = 0; i < record->axis_count[sensor]; i++)
-            s.step[i] = imki_static_step(record->reading[sensor][i], 0,
-                                         record->count < FEW_ROWS ? record->count : FEW_ROWS);
+            s.step[i] = imki_static_step(record->reading[sensor][i], 0, record->count);
         for (size_t begin = BESIDE, end; begin + 1 + BESIDE <= record->count; begin = end) {
             end = begin + 1;
             while (end < record->count && equal_rows(&s, begin, end))

@@ -244,8 +244,10 @@ static double rounding_square(const imk_calibrate_record *log, int sensor, int a
     double sum = 0;
     for (size_t k = 0; k < log->interval_count; k++)
         sum += pow(log->interval[k].rounding[sensor][axis], 2);
-    /* The same in all rests of a gyro: it does not average out. */
-    return sensor == IMK_GYRO || log->interval_count == 0 ? sum : sum / (double)log->interval_count;
+    /* The same in all rests of a gyro: it does not average out, and sigmas count it so, but for
+     * those of turns. */
+    const bool counted = sensor == IMK_GYRO && log->procedure != IMK_PROCEDURE_TURNS;
+    return counted || log->interval_count == 0 ? sum : sum / (double)log->interval_count;
 }
 
 static double sigma_square(const imk_calibrate_log *b, const imk_calibrate_record *log, int sensor,
@@ -253,11 +255,13 @@ static double sigma_square(const imk_calibrate_log *b, const imk_calibrate_recor
 {
     const imk_procedure_findings *f = &log->findings;
     double sum = 0, count = 0;
-    for (size_t k = f->first_observation; k < f->first_observation + f->observations; k++)
-        if (isfinite(b->calibration->observation[k].reading[sensor][axis])) {
-            sum += pow(b->calibration->observation[k].sigma[sensor][axis], 2);
-            count++;
-        }
+    for (size_t k = f->first_observation; k < f->first_observation + f->observations; k++) {
+        const imk_observation *o = &b->calibration->observation[k];
+        if (o->relative || !isfinite(o->reading[sensor][axis]))
+            continue;
+        sum += pow(o->sigma[sensor][axis], 2);
+        count++;
+    }
     return count > 0 ? sum / count : 0;
 }
 
@@ -267,7 +271,8 @@ static void add_coarse(const imk_calibrate_log *b, const imk_calibrate_record *l
 {
     const double share = 0.5;
     imki_text names = {0};
-    if (!b->result || log->record.means || log->procedure > IMK_PROCEDURE_FERRARIS)
+    if (!b->result || log->record.means ||
+        (log->procedure > IMK_PROCEDURE_FERRARIS && log->procedure != IMK_PROCEDURE_TURNS))
         return;
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < log->record.axis_count[sensor]; i++) {
