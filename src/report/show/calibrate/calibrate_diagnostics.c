@@ -244,9 +244,9 @@ static double rounding_square(const imk_calibrate_record *log, int sensor, int a
     double sum = 0;
     for (size_t k = 0; k < log->interval_count; k++)
         sum += pow(log->interval[k].rounding[sensor][axis], 2);
-    /* The same in all rests of a gyro: it does not average out, and sigmas count it so, but for
-     * those of turns. */
-    const bool counted = sensor == IMK_GYRO && log->procedure != IMK_PROCEDURE_TURNS;
+    /* The same in all rests of a gyro: it does not average out, and with poses and faces sigmas
+     * count it so. */
+    const bool counted = sensor == IMK_GYRO && log->procedure <= IMK_PROCEDURE_FERRARIS;
     return counted || log->interval_count == 0 ? sum : sum / (double)log->interval_count;
 }
 
@@ -272,7 +272,7 @@ static void add_coarse(const imk_calibrate_log *b, const imk_calibrate_record *l
     const double share = 0.5;
     imki_text names = {0};
     if (!b->result || log->record.means ||
-        (log->procedure > IMK_PROCEDURE_FERRARIS && log->procedure != IMK_PROCEDURE_TURNS))
+        log->procedure == IMK_PROCEDURE_THERMAL || log->procedure == IMK_PROCEDURE_MAGNETOMETER)
         return;
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < log->record.axis_count[sensor]; i++) {
