@@ -203,9 +203,45 @@ static void add(imk_verdict *v, imki_calibrate_message message)
     imki_verdict_add(v, message.level, message.code, "%s", message.text);
 }
 
+static bool is_of_sensors(double temperature)
+{
+    /* Military ranges begin at -55 degC; sensors for drill holes end at 150 to 200 degC. */
+    return temperature > 273.15 - 100 && temperature < 273.15 + 200;
+}
+
+/* Temperatures in which no sensor works are in another unit: kelvins and degrees Celsius, where the
+ * one is read as the other, are. Degrees Fahrenheit are not told. */
+static void add_temperature_unit(imk_verdict *v, const imk_calibrate_record *log)
+{
+    const double zero = 273.15;
+    const imk_thermal_findings *f = log->thermal;
+    const int column = imk_log_find(&log->log, IMK_QUANTITY_TEMPERATURE, -1);
+    const char *unit = column < 0 ? "" : log->log.column[column].unit.text, *likely = NULL;
+    if (is_of_sensors(f->minimum) && is_of_sensors(f->maximum))
+        return;
+    if (is_of_sensors(f->minimum - zero) && is_of_sensors(f->maximum - zero))
+        likely = "K";
+    else if (is_of_sensors(f->minimum + zero) && is_of_sensors(f->maximum + zero))
+        likely = "degC";
+    add(v, imki_calibrate_say(
+               IMK_FINDING_WARNING, "temperature_unit",
+               "%.150s: the temperature goes from %.4g to %.4g degC, and no inertial sensor works "
+               "below -100 or above 200 degC: %s%s%s",
+               log->path, f->minimum - zero, f->maximum - zero,
+               likely    ? "the column looks like "
+               : unit[0] ? "check the unit in the header"
+                         : "check --temperature-unit",
+               likely ? likely : "",
+               !likely   ? ""
+               : unit[0] ? "; correct the unit in the header"
+                         : "; correct --temperature-unit"));
+}
+
 static void add_thermal(imk_verdict *v, const imk_calibrate_record *log)
 {
     const imk_thermal_findings *f = log->thermal;
+    if (f)
+        add_temperature_unit(v, log);
     for (int sensor = 0; f && sensor < 2; sensor++)
         for (int i = 0; i < f->axis_count[sensor]; i++) {
             const imk_thermal_axis *a = &f->axis[sensor][i];
