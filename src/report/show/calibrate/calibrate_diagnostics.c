@@ -327,6 +327,52 @@ static void add_coarse(const imk_calibrate_log *b, const imk_calibrate_record *l
     free(names.bytes);
 }
 
+/* Positions in which the unit goes on turning; a few may be knocks. */
+static void add_creeping(const imk_calibrate_record *log, imk_verdict *v)
+{
+    const imk_procedure_findings *f = &log->findings;
+    const size_t few = 2;
+    const double share = 0.15;
+    if (f->creeping > few && (double)f->creeping > share * (double)f->intervals)
+        add(v, imki_calibrate_say(
+                   IMK_FINDING_WARNING, "creep",
+                   "%.150s: in %zu of %zu positions the accelerometers change steadily while the "
+                   "reference does not: the unit goes on turning, which the gyros feel, or the "
+                   "bias drifts; wait until the table stands, or clamp it",
+                   log->path, f->creeping, f->intervals));
+}
+
+/* Rests of the sensors in which no position of the reference was found. */
+static size_t rests_without_position(const imk_calibrate_log *b, const imk_calibrate_record *log)
+{
+    const imk_procedure_findings *f = &log->findings;
+    size_t without = 0;
+    for (size_t k = 0; k < log->interval_count; k++) {
+        bool found = false;
+        for (size_t i = f->first_observation; i < f->first_observation + f->observations; i++)
+            found = found || (b->calibration->observation[i].begin < log->interval[k].end &&
+                              b->calibration->observation[i].end > log->interval[k].begin);
+        without += !found;
+    }
+    return without;
+}
+
+static void add_moving_reference(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                                 imk_verdict *v)
+{
+    const double many = 0.2;
+    if (log->procedure != IMK_PROCEDURE_TUMBLE || log->record.means)
+        return;
+    const size_t without = rests_without_position(b, log);
+    if ((double)without > many * (double)log->interval_count)
+        add(v, imki_calibrate_say(
+                   IMK_FINDING_WARNING, "reference_moves",
+                   "%.150s: in %zu of %zu rests the reference is not constant for long enough, and "
+                   "they are not used: the table creeps, or the reference is too noisy or late; "
+                   "wait until the table stands, or clamp it",
+                   log->path, without, log->interval_count));
+}
+
 /* Few labels that the readings contradict: their holds are left out. */
 static void add_contradicted(const imk_calibrate_record *log, imk_verdict *v)
 {
@@ -538,6 +584,8 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
         add_coarse(b, log, &v);
         add_lost(log, &v);
         add_contradicted(log, &v);
+        add_creeping(log, &v);
+        add_moving_reference(b, log, &v);
         add_thermal(&v, log);
         imki_turns_verdict(b, log, &v);
     }
