@@ -494,7 +494,8 @@ static const struct message {
      "than stated (1 sigma {2.2g} s); use --motion-offset {3.4f}s, or auto"},
     {"calibrate:reference_offset",
      "{record}: the {name} readings are {0.3g} s {1?}behind{1!}ahead of{?} the columns {other} (1 "
-     "sigma {2.2g} s), and the ends of steps that are left out are shorter: the clocks of both differ; "
+     "sigma {2.2g} s), and the ends of steps that are left out are shorter: the clocks of both "
+     "differ; "
      ""
      "shift the columns by as much"},
     {"calibrate:reference_force",

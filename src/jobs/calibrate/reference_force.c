@@ -31,8 +31,8 @@ static double force_at_rest(const imk_calibrate_record *log)
     if (!record->reference_rate[0] && log->procedure != IMK_PROCEDURE_TUMBLE)
         return 0;
     for (size_t k = 0; k < record->count; k++) {
-        const bool turns =
-            record->reference_rate[0] && !(square_of(record->reference_rate, k) < at_rest * at_rest);
+        const bool turns = record->reference_rate[0] &&
+                           !(square_of(record->reference_rate, k) < at_rest * at_rest);
         const double square = square_of(record->reference_force, k);
         if (turns || !isfinite(square))
             continue;

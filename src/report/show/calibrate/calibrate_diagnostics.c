@@ -307,13 +307,14 @@ static void add_coarse(const imk_calibrate_log *b, const imk_calibrate_record *l
 {
     const double share = 0.5;
     imki_text names = {0};
-    if (!b->result || log->record.means ||
-        log->procedure == IMK_PROCEDURE_THERMAL || log->procedure == IMK_PROCEDURE_MAGNETOMETER)
+    if (!b->result || log->record.means || log->procedure == IMK_PROCEDURE_THERMAL ||
+        log->procedure == IMK_PROCEDURE_MAGNETOMETER)
         return;
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < log->record.axis_count[sensor]; i++) {
             const double square = rounding_square(log, sensor, i);
-            if (square > 0 && square > share * sigma_square(b, log, sensor, i))
+            const double whole = sigma_square(b, log, sensor, i);
+            if (whole > 0 && square > share * whole)
                 imki_list_item(&names, "%s_%c", imki_sensor_keys[sensor],
                                imk_axis_letter(log->body_axis[sensor][i]));
         }
