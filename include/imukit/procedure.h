@@ -115,8 +115,10 @@ typedef struct imk_turns_findings {
     size_t other_begin;  /**< sample at which the first of these begins */
     int other_axis;      /**< its axis; -1: about no one axis */
     double other_angle;  /**< angle that the gyro reads in it [rad] */
-    size_t odd;          /**< turns left out because their angle does not agree with the others; the
-                            chance that a sound log has one is 1 in 1000 or less */
+    size_t other_gyro[3][3]; /**< turns left out, by the axis of their label and that of the gyro
+                                which reads most of them */
+    size_t odd; /**< turns left out because their angle does not agree with the others; the
+                   chance that a sound log has one is 1 in 1000 or less */
     imk_odd_turn odd_turn[IMK_ODD_TURNS_MAX]; /**< the first of them */
     double torn[3]; /**< of the turns about each axis: largest difference of what the gyro reads by
                        angles that were stated equal, where they do not agree and are too few to

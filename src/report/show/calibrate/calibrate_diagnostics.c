@@ -454,13 +454,16 @@ static void add_placements(const imk_calibrate_log *b, imk_verdict *v)
                    IMK_FINDING_NOTE, "placement_untested",
                    "this log does not test the placements: their uncertainty is as --placement "
                    "states; put the unit on each face three times to test it"));
-    else if (imk_gamma_upper(0.5 * fit->degrees_of_freedom, 0.5 * fit->chi_square) < by_chance)
+    else if (imk_gamma_upper(0.5 * fit->degrees_of_freedom, 0.5 * fit->chi_square) < by_chance) {
+        char advice[80] = "";
+        if (fit->rms < imki_placement_most)
+            snprintf(advice, sizeof advice, ", or state --placement %.2gdeg", fit->rms * degrees);
         add(v, imki_calibrate_say(
                    IMK_FINDING_WARNING, "placement",
                    "the placements scatter by %.2g deg (1 sigma), %.2g times what --placement "
-                   "states: this is included in every uncertainty; check the faces and the plate, "
-                   "or state --placement %.2gdeg",
-                   fit->rms * degrees, fit->factor, fit->rms * degrees));
+                   "states: this is included in every uncertainty; check the faces and the plate%s",
+                   fit->rms * degrees, fit->factor, advice));
+    }
 }
 
 /* Slow noise of the sensor, which a table without times cannot show to be common to its rows. */
