@@ -112,6 +112,23 @@ static imki_calibrate_message unequal_axes(const imk_calibrate_log *b,
         g->axis_noise[d->axis] / unit.scale, unit.text, key, quiet, key, noisy);
 }
 
+/* With fewer than three degrees of freedom the estimator leaves the sigmas as stated. */
+static imki_calibrate_message slightly_unexplained(const imk_calibrate_log *b,
+                                                   const imk_diagnostic_finding *d)
+{
+    const bool known = d->other >= 0 && d->other < IMK_GROUPS;
+    const bool included = !known || b->result->group[d->other].factor > 0.9 * sqrt(d->value);
+    return imki_calibrate_say(
+        included ? IMK_FINDING_NOTE : IMK_FINDING_WARNING, "residuals",
+        "the residuals are %.3g times what the noise within the holds explains (chi-square per "
+        "degree of freedom %.3g): the table, the hand or the sensor does more than the model "
+        "describes; %s",
+        sqrt(d->value), d->value,
+        included ? "every 1 sigma includes this excess"
+                 : "the residuals are too few to include this excess in the sigmas: add poses or "
+                   "repeat them");
+}
+
 static imki_calibrate_message on_solution(const imk_calibrate_log *b,
                                           const imk_diagnostic_finding *d)
 {
@@ -123,12 +140,7 @@ static imki_calibrate_message on_solution(const imk_calibrate_log *b,
             return divided_twice(d, samples);
         if (sqrt(d->value) > residual_alarm)
             return unexplained(b, d);
-        return imki_calibrate_say(
-            IMK_FINDING_NOTE, "residuals",
-            "the residuals are %.3g times what the noise within the holds explains "
-            "(chi-square per degree of freedom %.3g): the table, the hand or the sensor "
-            "does more than the model describes; every 1 sigma includes this excess",
-            sqrt(d->value), d->value);
+        return slightly_unexplained(b, d);
     case IMK_DIAGNOSTIC_CORRELATED:
         return correlated(b, d->value);
     case IMK_DIAGNOSTIC_UNEQUAL_AXES:
