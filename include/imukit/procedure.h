@@ -139,7 +139,7 @@ typedef struct imk_procedure_findings {
     double lag, lag_sigma; /**< delay of the readings against a reference that is never constant,
                               estimated and corrected [s]; sigma 0: not estimated */
     size_t creeping;       /**< of the procedure "tumble": stretches in which the readings of
-                              accelerometers       have a slope */
+                              accelerometers have a slope */
     imk_turns_findings known_turns; /**< of the procedure "turns", else zeros */
     size_t undetermined_count; /**< number of parameters that the procedure estimates but this log
                                   does not determine: they keep the model's values */
