@@ -115,8 +115,10 @@ typedef struct imk_turns_findings {
     size_t other_begin;  /**< sample at which the first of these begins */
     int other_axis;      /**< its axis; -1: about no one axis */
     double other_angle;  /**< angle that the gyro reads in it [rad] */
-    size_t odd;          /**< turns left out because their angle does not agree with the others; the
-                            chance that a sound log has one is 1 in 1000 or less */
+    size_t other_gyro[3][3]; /**< turns left out, by the axis of their label and that of the gyro
+                                which reads most of them */
+    size_t odd; /**< turns left out because their angle does not agree with the others; the
+                   chance that a sound log has one is 1 in 1000 or less */
     imk_odd_turn odd_turn[IMK_ODD_TURNS_MAX]; /**< the first of them */
     double torn[3]; /**< of the turns about each axis: largest difference of what the gyro reads by
                        angles that were stated equal, where they do not agree and are too few to
@@ -136,6 +138,8 @@ typedef struct imk_procedure_findings {
                       product of their unit vectors, 1/3 at best; 0: all in one plane */
     double lag, lag_sigma; /**< delay of the readings against a reference that is never constant,
                               estimated and corrected [s]; sigma 0: not estimated */
+    size_t creeping;       /**< of the procedure "tumble": stretches in which the readings of
+                              accelerometers have a slope */
     imk_turns_findings known_turns; /**< of the procedure "turns", else zeros */
     size_t undetermined_count; /**< number of parameters that the procedure estimates but this log
                                   does not determine: they keep the model's values */

@@ -322,6 +322,11 @@ static const struct message {
     {"calibrate:not_finite",
      "{record}: in {0} of {1} rows a reading or the temperature is not finite, or beyond 1e60, "
      "first in row {2}; these rows, or the hold or step that they interrupt, are left out"},
+    {"calibrate:fill_rows",
+     "{record}: in {0} of {1} rows, first in row {2}, all {name} axes have {3?}the value 0"
+     "{3!}the same values{?}, while the rows before and behind are far from there: a logger wrote "
+     "them where it had no reading, and they change the scale factors by the share of the rows; "
+     "mend the logger and repeat the test"},
     {"axis_gap", "{record} has {name}: calibration needs the axes x, y, z in this order; name the "
                  "columns with --columns"},
     {"turns_without_accel",
@@ -487,6 +492,20 @@ static const struct message {
     {"calibrate:motion_offset",
      "{record} fits the programme best if the programme begins {0.4f} s {1?}later{1!}earlier{?} "
      "than stated (1 sigma {2.2g} s); use --motion-offset {3.4f}s, or auto"},
+    {"calibrate:reference_offset",
+     "{record}: the {name} readings are {0.3g} s {1?}behind{1!}ahead of{?} the columns {other} (1 "
+     "sigma {2.2g} s), and the ends of steps that are left out are shorter: the clocks of both "
+     "differ; "
+     ""
+     "shift the columns by as much"},
+    {"calibrate:reference_force",
+     "{record}: at rest the reference_force columns are {0.4g} m/s^2, and gravity is 9.81: "
+     "{1?}they look like {name}; correct the unit in the header{1!}check their unit{?}"},
+    {"calibrate:reference_direction",
+     "{record}: the accelerometers do not read the reference_force of the columns (cosine between "
+     "them {0.2f}): {1?}the columns have the opposite sign, as gravity has and specific force, "
+     "which is upwards at rest, has not; turn their signs round{1!}check signs and order of their "
+     "axes{?}"},
     {"calibrate:not_aligned",
      "{record} fits the programme at no single offset: the clock of the log may run faster or "
      "slower "

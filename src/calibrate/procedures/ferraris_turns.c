@@ -138,7 +138,7 @@ static void detect_turns(const imk_test_record *record, const imk_procedure_sett
 
 static imk_status turns_missing(int axes, const bool seen[3], imk_error *error)
 {
-    char missing[96] = "add a full turn about ";
+    char missing[160] = "add a full turn about ";
     bool first = true;
     for (int i = 0; i < 3; i++) {
         if (seen[i])
@@ -147,6 +147,9 @@ static imk_status turns_missing(int axes, const bool seen[3], imk_error *error)
         imki_append_text(missing, sizeof missing, i == 0 ? "x" : i == 1 ? "y" : "z");
         first = false;
     }
+    imki_append_text(missing, sizeof missing,
+                     "; if there is one, state its angle (--turn-angle), or look for missing "
+                     "samples and a wrong range");
     return imki_refuse(error, IMK_ERROR_TOO_SHORT, "turn", axes, 3, missing);
 }
 

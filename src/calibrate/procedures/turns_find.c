@@ -359,6 +359,8 @@ static void label_turns(const imki_procedure_call *call, imki_turn_list *list)
             (list->known && size < slack * fabs(turn.angle))) {
             tell_other(call, k, one && l.axis == turn.body ? turn.body : -1,
                        angle_read(list, &turn, axis));
+            if (one && l.axis >= 0 && l.axis != turn.body)
+                call->findings->known_turns.other_gyro[l.axis][turn.body]++;
             call->findings->left_out++;
             continue;
         }

@@ -115,6 +115,13 @@ imk_status imki_reference_blocks(const imki_procedure_call *call, int sensor, do
                                  int fixture, size_t skip_count, const imk_reference_stretch *skip,
                                  const double *sigma);
 
+/* ---- reference_creep.c --------------------------------------------------------------------------
+ */
+
+/* In how many of the stretches the accelerometers have a slope beyond the noise. */
+size_t imki_reference_creeping(const imk_test_record *record, size_t count,
+                               const imk_reference_stretch *stretch);
+
 /* ---- reference_spin.c --------------------------------------------------------------------------
  */
 

@@ -532,6 +532,8 @@ imk_status imki_reference_observe(const imki_procedure_call *call)
         return status;
     call->findings->intervals = o.count;
     call->findings->spread = spread_of(c, first);
+    if (call->procedure == IMK_PROCEDURE_TUMBLE)
+        call->findings->creeping = imki_reference_creeping(o.record, o.count, o.stretch);
     if (!call->keep_free)
         set_frame(c);
     imki_candidate list[IMKI_CANDIDATES_MAX];

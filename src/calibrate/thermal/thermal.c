@@ -66,12 +66,6 @@ unsigned imki_thermal_columns(const imk_thermal_axis *axis)
 
 /* ---- cause ----------------------------------------------------------------------------------- */
 
-static double z_of(const imki_thermal_estimate *e, int column)
-{
-    const double variance = e->covariance[column * N + column];
-    return variance > 0.0 ? fabs(e->value[column]) / sqrt(variance) : 0.0;
-}
-
 /* ln of the likelihood over that of no cause, at the noise's most likely point. */
 static double likelihood_over(const imki_thermal_work *work, int axis, unsigned powers,
                               unsigned also)
@@ -86,7 +80,7 @@ static void find_cause(const imki_thermal_work *work, int axis,
                        const imk_thermal_settings *settings, imk_thermal_axis *out)
 {
     const unsigned powers = imki_thermal_powers(settings->order_max);
-    const double limit = sqrt(imk_chi_square_quantile(1.0 - settings->significance, 1.0));
+    const double limit = settings->significance;
     imki_thermal_estimate e;
     out->cause = IMK_THERMAL_NONE;
     for (int c = 0; c < IMK_THERMAL_CAUSES; c++)
@@ -96,11 +90,11 @@ static void find_cause(const imki_thermal_work *work, int axis,
     const imk_thermal_cause first = hysteresis ? IMK_THERMAL_HYSTERESIS : IMK_THERMAL_RATE;
     const int column = hysteresis ? IMKI_THERMAL_STATE : IMKI_THERMAL_RATE;
     const int other = hysteresis ? IMKI_THERMAL_RATE : IMKI_THERMAL_STATE;
-    if (!imki_thermal_fit(work, axis, powers | columns_of(first), &e) || z_of(&e, column) < limit)
+    if (!imki_thermal_fit(work, axis, powers | columns_of(first), &e) || e.chance[column] > limit)
         return;
     out->cause = first;
     if (imki_thermal_fit(work, axis, powers | columns_of(IMK_THERMAL_BOTH), &e) &&
-        z_of(&e, other) >= limit && z_of(&e, column) >= limit)
+        e.chance[other] <= limit && e.chance[column] <= limit)
         out->cause = IMK_THERMAL_BOTH;
 }
 
@@ -128,12 +122,11 @@ static double excess_of(const double *error, const double *best)
 static int significant_order(const imki_thermal_work *work, int axis,
                              const imk_thermal_settings *settings, const imk_thermal_axis *out)
 {
-    const double limit = sqrt(imk_chi_square_quantile(1.0 - settings->significance, 1.0));
     int order = out->order;
     imki_thermal_estimate e;
     while (order > 0 && (!imki_thermal_fit(
                              work, axis, imki_thermal_powers(order) | columns_of(out->cause), &e) ||
-                         z_of(&e, order) < limit))
+                         e.chance[order] > settings->significance))
         order--;
     return order;
 }
@@ -265,13 +258,9 @@ static void analyse_axis(const imk_test_record *record, const imk_model *model,
     out->scatter = blocks->scatter[axis];
     report_causes(work, axis, out);
     report_noise(work, axis, out);
-    imki_thermal_gaps(work, axis, findings, out);
-    out->single_valued = out->cause == IMK_THERMAL_NONE;
     const double level = settings->significance / (double)(findings->gap_count + 1);
-    const double limit = sqrt(imk_chi_square_quantile(1.0 - level, 1.0));
-    for (int g = 0; g < findings->gap_count; g++)
-        if (fabs(out->gap[g].value) > limit * out->gap[g].sigma)
-            out->single_valued = false;
+    const double chance = imki_thermal_gaps(work, axis, findings, out);
+    out->single_valued = out->cause == IMK_THERMAL_NONE && !(chance < level);
     if (findings->both_directions) {
         imki_thermal_lag(work, axis, settings->order_max, out);
         const double least = 0.5 * imk_chi_square_quantile(1.0 - settings->significance, 1.0);

@@ -91,27 +91,33 @@ static double weighted(const imki_thermal_blocks *blocks, int axis, const double
     return sum;
 }
 
-/* a^T V a */
-static double variance_of(const imki_thermal_work *work, int axis, const double *a)
+/* a^T V a of each kind of noise, for variances of 1. */
+typedef struct noise_parts {
+    double white, flicker, walk;
+} noise_parts;
+
+static noise_parts parts_of(const imki_thermal_work *work, const double *a)
 {
     const size_t n = work->blocks.count;
-    const imki_thermal_variance *v = &work->variance[axis];
-    double sum = 0.0;
+    noise_parts sum = {0.0, 0.0, 0.0};
     for (size_t i = 0; i < n; i++) {
         if (a[i] == 0.0)
             continue;
-        sum += v->white * a[i] * a[i] * work->blocks.per_block / work->blocks.size[i];
-        for (size_t j = 0; j < n; j++)
-            sum += a[i] * a[j] *
-                   (v->flicker * work->flicker[i * n + j] + v->walk * work->walk[i * n + j]);
+        sum.white += a[i] * a[i] * work->blocks.per_block / work->blocks.size[i];
+        for (size_t j = 0; j < n; j++) {
+            sum.flicker += a[i] * a[j] * work->flicker[i * n + j];
+            sum.walk += a[i] * a[j] * work->walk[i * n + j];
+        }
     }
     return sum;
 }
 
-void imki_thermal_gaps(imki_thermal_work *work, int axis, const imk_thermal_findings *findings,
-                       imk_thermal_axis *out)
+double imki_thermal_gaps(imki_thermal_work *work, int axis, const imk_thermal_findings *findings,
+                         imk_thermal_axis *out)
 {
     const imki_thermal_blocks *blocks = &work->blocks;
+    const imki_thermal_variance *v = &work->variance[axis];
+    double least = 1.0;
     for (int g = 0; g < findings->gap_count; g++) {
         double up[IMKI_THERMAL_BLOCKS] = {0.0}, down[IMKI_THERMAL_BLOCKS] = {0.0};
         const double t = findings->gap_temperature[g], mean = blocks->mean[axis];
@@ -124,11 +130,17 @@ void imki_thermal_gaps(imki_thermal_work *work, int axis, const imk_thermal_find
             continue;
         for (size_t b = 0; b < blocks->count; b++)
             up[b] -= down[b];
-        out->gap[g].value = weighted(blocks, axis, up);
-        out->gap[g].sigma = sqrt(variance_of(work, axis, up));
+        const noise_parts parts = parts_of(work, up);
+        const double gap = weighted(blocks, axis, up);
+        out->gap[g].value = gap;
+        out->gap[g].sigma =
+            sqrt(v->white * parts.white + v->flicker * parts.flicker + v->walk * parts.walk);
+        least = fmin(least, imki_thermal_chance(work, axis, gap * gap, parts.white, parts.flicker,
+                                                parts.walk));
         if (fabs(out->gap[g].value) > out->gap_largest)
             out->gap_largest = fabs(out->gap[g].value);
     }
+    return least;
 }
 
 /* ---- lag ------------------------------------------------------------------------------------- */

@@ -39,6 +39,16 @@ static double noise_moment(const imki_thermal_work *work, int axis, int i, int j
            v->walk * work->walk_moment[i * N + j];
 }
 
+/* r^T M r */
+static double quadratic(size_t q, const int *index, const double *r, const double *moment)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < q; i++)
+        for (size_t j = 0; j < q; j++)
+            sum += r[i] * r[j] * moment[index[i] * N + index[j]];
+    return sum;
+}
+
 bool imki_thermal_fit(const imki_thermal_work *work, int axis, unsigned mask,
                       imki_thermal_estimate *estimate)
 {
@@ -52,6 +62,8 @@ bool imki_thermal_fit(const imki_thermal_work *work, int axis, unsigned mask,
         return false;
     imk_cholesky_inverse(q, a, inverse);
     memset(estimate, 0, sizeof *estimate);
+    for (int c = 0; c < N; c++)
+        estimate->chance[c] = 1.0;
     for (size_t i = 0; i < q; i++)
         for (size_t j = 0; j < q; j++) {
             estimate->value[index[i]] += inverse[i * q + j] * work->reading_moment[axis][index[j]];
@@ -65,6 +77,14 @@ bool imki_thermal_fit(const imki_thermal_work *work, int axis, unsigned mask,
             for (size_t k = 0; k < q; k++)
                 estimate->covariance[index[i] * N + index[j]] +=
                     half[i * q + k] * inverse[k * q + j];
+    for (size_t i = 0; i < q; i++) {
+        const double *r = inverse + i * q;
+        const double value = estimate->value[index[i]];
+        estimate->chance[index[i]] = imki_thermal_chance(
+            work, axis, value * value, quadratic(q, index, r, work->white_moment),
+            quadratic(q, index, r, work->flicker_moment),
+            quadratic(q, index, r, work->walk_moment));
+    }
     return true;
 }
 

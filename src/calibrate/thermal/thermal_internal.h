@@ -102,6 +102,9 @@ typedef struct imki_thermal_work {
     double walk_moment[IMKI_THERMAL_COLUMNS * IMKI_THERMAL_COLUMNS];
     double reading_moment[IMKI_THERMAL_AXES][IMKI_THERMAL_COLUMNS]; /* X^T y */
     imki_thermal_variance variance[IMKI_THERMAL_AXES];
+    /* What these are means over: weight of each point of the grid, and white variance there. */
+    double weight[IMKI_THERMAL_AXES][IMKI_THERMAL_GRID],
+        level[IMKI_THERMAL_AXES][IMKI_THERMAL_GRID];
     int best[IMKI_THERMAL_AXES]; /* most likely point of the grid */
     unsigned available;          /* columns that the log tells apart, bit k: column k */
     imk_correction correction;   /* of the readings at the reference: thermal_observe.c */
@@ -118,12 +121,18 @@ void imki_thermal_whiten(const imki_thermal_work *work, double *x);
 double imki_thermal_weighted_rss(const imki_thermal_work *work, int axis, unsigned mask, int point,
                                  double *information);
 
+/* Chance of a value as large as the square root of `square` if nothing but noise is there, of which
+ * these are the shares of the three kinds in its variance. */
+double imki_thermal_chance(const imki_thermal_work *work, int axis, double square, double white,
+                           double flicker, double walk);
+
 /* ---- thermal_fit.c: fits ------------------------------------------------------------------------
  */
 
 typedef struct imki_thermal_estimate {
     double value[IMKI_THERMAL_COLUMNS];
     double covariance[IMKI_THERMAL_COLUMNS * IMKI_THERMAL_COLUMNS];
+    double chance[IMKI_THERMAL_COLUMNS]; /* that noise alone gives as large a value; else 1 */
 } imki_thermal_estimate;
 
 /* Columns of a polynomial. */
@@ -144,8 +153,9 @@ void imki_thermal_validate(const imki_thermal_work *work, int axis, unsigned mas
 /* ---- thermal_branches.c: warming against cooling ----------------------------------------------
  */
 void imki_thermal_passes(imki_thermal_blocks *blocks, imk_thermal_findings *findings);
-void imki_thermal_gaps(imki_thermal_work *work, int axis, const imk_thermal_findings *findings,
-                       imk_thermal_axis *out);
+/* @return the least chance that noise alone makes a gap as large; 1: there is no gap */
+double imki_thermal_gaps(imki_thermal_work *work, int axis, const imk_thermal_findings *findings,
+                         imk_thermal_axis *out);
 void imki_thermal_lag(imki_thermal_work *work, int axis, int order, imk_thermal_axis *out);
 
 /* ---- thermal.c: what observing needs besides the findings; work stays in the workspace ---- */

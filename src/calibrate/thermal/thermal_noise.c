@@ -23,6 +23,7 @@
  * strong its slow noise is can not be known well; the best point alone is without any in many a log
  * that has it. */
 #include "base/algebra/vector_internal.h"
+#include "imukit/distributions.h"
 #include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
 #include "thermal_internal.h"
@@ -242,12 +243,28 @@ static void weigh_axis(imki_thermal_work *work, int axis)
      * which thereby count for more. */
     const double kept = 1.0 - work->blocks.refused[axis];
     for (int p = 0; p < IMKI_THERMAL_GRID; p++) {
-        const double variance =
-            weight[p] > 0.0 ? weight[p] / sum * rss[p] / (freedom * kept * kept) : 0.0;
+        work->weight[axis][p] = weight[p] / sum;
+        work->level[axis][p] = weight[p] > 0.0 ? rss[p] / (freedom * kept * kept) : 0.0;
+        const double variance = work->weight[axis][p] * work->level[axis][p];
         v->white += variance;
         v->flicker += variance * flicker_of(p);
         v->walk += variance * walk_of(p);
     }
+}
+
+/* How strong the slow noise is, is not known well, so a value is not normal about 0: its tails are
+ * those of the mixture over the points. */
+double imki_thermal_chance(const imki_thermal_work *work, int axis, double square, double white,
+                           double flicker, double walk)
+{
+    double chance = 0.0;
+    for (int p = 0; p < IMKI_THERMAL_GRID; p++) {
+        const double variance =
+            work->level[axis][p] * (white + flicker_of(p) * flicker + walk_of(p) * walk);
+        if (variance > 0.0)
+            chance += work->weight[axis][p] * imk_gamma_upper(0.5, 0.5 * square / variance);
+    }
+    return chance;
 }
 
 /* Moments for fits with equal weights. */

@@ -19,6 +19,8 @@ static const double followed = 0.5;
 /* A drift between the halves of a record that is less does not reach from one step into the next
  * [s]: 0.2 s are left out at both ends of a step. */
 static const double clock_tolerance = 0.1;
+/* So much is left out at both ends of a step [s]: a shorter delay is that of a filter. */
+static const double trimmed = 0.2;
 
 static imk_status no_memory(imk_error *error)
 {
@@ -226,6 +228,27 @@ static imk_status check_offset(imk_calibrate_record *log, imk_error *error)
     return status == IMK_ERROR_MEMORY ? no_memory(error) : IMK_OK;
 }
 
+/* Columns of rates, or of forces, that are late or early beside the readings. A sine has many
+ * shifts. */
+static imk_status check_columns(imk_calibrate_record *log, int sensor, imk_error *error)
+{
+    imk_error why;
+    imk_reference_shift shift;
+    imk_test_record one = log->record;
+    for (int i = 0; i < 3; i++)
+        *(sensor == IMK_GYRO ? &one.reference_force[i] : &one.reference_rate[i]) = NULL;
+    if (one.means || (!one.reference_rate[0] && !one.reference_force[0]))
+        return IMK_OK;
+    const imk_status status = find_shift(&one, &log->log.allocator, &shift, &why);
+    if (status == IMK_OK && shift.correlation > followed &&
+        shift.rival < 0.95 * shift.correlation &&
+        fabs(shift.offset) > trimmed + log->record.dt + 5 * shift.sigma)
+        imki_find(&log->loaded, IMK_FINDING_WARNING, "calibrate:reference_offset",
+                  sensor == IMK_GYRO ? "gyro\treference_rate" : "accelerometer\treference_force",
+                  IMKI_NUMBERS(fabs(shift.offset), shift.offset > 0, shift.sigma));
+    return status == IMK_ERROR_MEMORY ? no_memory(error) : IMK_OK;
+}
+
 /* `count` samples from `begin` on, of readings and references. */
 static imk_test_record part_of(const imk_test_record *whole, size_t begin, size_t count)
 {
@@ -322,6 +345,11 @@ imk_status imki_take_reference(const imk_calibrate_log_settings *s, imk_calibrat
         status = take_vector(log, vectors[k].name, vectors[k].unit, vectors[k].target, error);
     if (status == IMK_OK && !log->record.reference_rate[0])
         status = take_table(s, log, error);
+    if (status != IMK_OK)
+        return status;
+    imki_check_reference_force(log);
+    for (int sensor = 0; sensor < 2 && status == IMK_OK && !s->motion; sensor++)
+        status = check_columns(log, sensor, error);
     if (status != IMK_OK || !s->motion)
         return status;
     if (log->record.reference_rate[0] || log->record.reference_force[0])

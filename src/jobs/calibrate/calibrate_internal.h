@@ -13,6 +13,8 @@ static const char *const imki_sensor_units[IMK_KINDS] = {"rad/s", "m/s^2", "T"};
 
 /* session_record.c: the name of a record without its folders. */
 const char *imki_record_name(const char *path);
+/* fill_rows.c: rows that are no readings, as loggers write them where one was lost. */
+void imki_tell_fill_rows(const imk_test_record *record, imk_findings *findings);
 /* calibrate_set_up.c: the problem, its records not loaded; then what is known before of them. */
 imk_status imki_calibrate_set_up(imk_calibrate_log *b, const imk_procedure *procedure,
                                  imk_error *error);
@@ -25,6 +27,9 @@ imk_status imki_find_column(imk_calibrate_record *log, const char *name, const c
                             int *found, imk_error *error);
 imk_status imki_take_reference(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
                                imk_error *error);
+
+/* reference_force.c: whether the forces of columns are specific forces in their unit. */
+void imki_check_reference_force(imk_calibrate_record *log);
 
 /* pose_means.c: how well the means of a table are known, from the columns beside them. */
 imk_status imki_take_means(const imk_calibrate_log_settings *s, imk_calibrate_record *log,

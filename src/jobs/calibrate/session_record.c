@@ -252,8 +252,10 @@ static imk_status make_record(imk_calibrate_record *log, const char *section,
         status = take_sections(log, column, error);
     if (status == IMK_OK)
         imki_tell_unused(columns->column_count, columns->column, IMK_KINDS, findings);
-    if (status == IMK_OK && !record->means)
+    if (status == IMK_OK && !record->means) {
         tell_missing(record, findings);
+        imki_tell_fill_rows(record, findings);
+    }
     return status;
 }
 

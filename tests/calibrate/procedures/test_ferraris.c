@@ -533,7 +533,7 @@ static void test_refusals(void **state)
             m->section[k] = -1;
     CHECK_STATUS(observe(b, &m->record, &settings, &error), IMK_ERROR_TOO_SHORT);
     assert_string_equal(error.field, "turn");
-    assert_string_equal(error.expected, "add a full turn about y");
+    assert_non_null(strstr(error.expected, "add a full turn about y; if there is one"));
     CHECK_CLOSE(error.value, 2.0, 0.0);
     for (size_t k = 0; k < m->count; k++)
         if (m->section[k] == 5 || m->section[k] == 0)

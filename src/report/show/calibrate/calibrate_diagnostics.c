@@ -112,6 +112,23 @@ static imki_calibrate_message unequal_axes(const imk_calibrate_log *b,
         g->axis_noise[d->axis] / unit.scale, unit.text, key, quiet, key, noisy);
 }
 
+/* With fewer than three degrees of freedom the estimator leaves the sigmas as stated. */
+static imki_calibrate_message slightly_unexplained(const imk_calibrate_log *b,
+                                                   const imk_diagnostic_finding *d)
+{
+    const bool known = d->other >= 0 && d->other < IMK_GROUPS;
+    const bool included = !known || b->result->group[d->other].factor > 0.9 * sqrt(d->value);
+    return imki_calibrate_say(
+        included ? IMK_FINDING_NOTE : IMK_FINDING_WARNING, "residuals",
+        "the residuals are %.3g times what the noise within the holds explains (chi-square per "
+        "degree of freedom %.3g): the table, the hand or the sensor does more than the model "
+        "describes; %s",
+        sqrt(d->value), d->value,
+        included ? "every 1 sigma includes this excess"
+                 : "the residuals are too few to include this excess in the sigmas: add poses or "
+                   "repeat them");
+}
+
 static imki_calibrate_message on_solution(const imk_calibrate_log *b,
                                           const imk_diagnostic_finding *d)
 {
@@ -123,12 +140,7 @@ static imki_calibrate_message on_solution(const imk_calibrate_log *b,
             return divided_twice(d, samples);
         if (sqrt(d->value) > residual_alarm)
             return unexplained(b, d);
-        return imki_calibrate_say(
-            IMK_FINDING_NOTE, "residuals",
-            "the residuals are %.3g times what the noise within the holds explains "
-            "(chi-square per degree of freedom %.3g): the table, the hand or the sensor "
-            "does more than the model describes; every 1 sigma includes this excess",
-            sqrt(d->value), d->value);
+        return slightly_unexplained(b, d);
     case IMK_DIAGNOSTIC_CORRELATED:
         return correlated(b, d->value);
     case IMK_DIAGNOSTIC_UNEQUAL_AXES:
@@ -203,9 +215,45 @@ static void add(imk_verdict *v, imki_calibrate_message message)
     imki_verdict_add(v, message.level, message.code, "%s", message.text);
 }
 
+static bool is_of_sensors(double temperature)
+{
+    /* Military ranges begin at -55 degC; sensors for drill holes end at 150 to 200 degC. */
+    return temperature > 273.15 - 100 && temperature < 273.15 + 200;
+}
+
+/* Temperatures in which no sensor works are in another unit: kelvins and degrees Celsius, where the
+ * one is read as the other, are. Degrees Fahrenheit are not told. */
+static void add_temperature_unit(imk_verdict *v, const imk_calibrate_record *log)
+{
+    const double zero = 273.15;
+    const imk_thermal_findings *f = log->thermal;
+    const int column = imk_log_find(&log->log, IMK_QUANTITY_TEMPERATURE, -1);
+    const char *unit = column < 0 ? "" : log->log.column[column].unit.text, *likely = NULL;
+    if (is_of_sensors(f->minimum) && is_of_sensors(f->maximum))
+        return;
+    if (is_of_sensors(f->minimum - zero) && is_of_sensors(f->maximum - zero))
+        likely = "K";
+    else if (is_of_sensors(f->minimum + zero) && is_of_sensors(f->maximum + zero))
+        likely = "degC";
+    add(v, imki_calibrate_say(
+               IMK_FINDING_WARNING, "temperature_unit",
+               "%.150s: the temperature goes from %.4g to %.4g degC, and no inertial sensor works "
+               "below -100 or above 200 degC: %s%s%s",
+               log->path, f->minimum - zero, f->maximum - zero,
+               likely    ? "the column looks like "
+               : unit[0] ? "check the unit in the header"
+                         : "check --temperature-unit",
+               likely ? likely : "",
+               !likely   ? ""
+               : unit[0] ? "; correct the unit in the header"
+                         : "; correct --temperature-unit"));
+}
+
 static void add_thermal(imk_verdict *v, const imk_calibrate_record *log)
 {
     const imk_thermal_findings *f = log->thermal;
+    if (f)
+        add_temperature_unit(v, log);
     for (int sensor = 0; f && sensor < 2; sensor++)
         for (int i = 0; i < f->axis_count[sensor]; i++) {
             const imk_thermal_axis *a = &f->axis[sensor][i];
@@ -244,8 +292,10 @@ static double rounding_square(const imk_calibrate_record *log, int sensor, int a
     double sum = 0;
     for (size_t k = 0; k < log->interval_count; k++)
         sum += pow(log->interval[k].rounding[sensor][axis], 2);
-    /* The same in all rests of a gyro: it does not average out. */
-    return sensor == IMK_GYRO || log->interval_count == 0 ? sum : sum / (double)log->interval_count;
+    /* The same in all rests of a gyro: it does not average out, and with poses and faces sigmas
+     * count it so. */
+    const bool counted = sensor == IMK_GYRO && log->procedure <= IMK_PROCEDURE_FERRARIS;
+    return counted || log->interval_count == 0 ? sum : sum / (double)log->interval_count;
 }
 
 static double sigma_square(const imk_calibrate_log *b, const imk_calibrate_record *log, int sensor,
@@ -253,11 +303,13 @@ static double sigma_square(const imk_calibrate_log *b, const imk_calibrate_recor
 {
     const imk_procedure_findings *f = &log->findings;
     double sum = 0, count = 0;
-    for (size_t k = f->first_observation; k < f->first_observation + f->observations; k++)
-        if (isfinite(b->calibration->observation[k].reading[sensor][axis])) {
-            sum += pow(b->calibration->observation[k].sigma[sensor][axis], 2);
-            count++;
-        }
+    for (size_t k = f->first_observation; k < f->first_observation + f->observations; k++) {
+        const imk_observation *o = &b->calibration->observation[k];
+        if (o->relative || !isfinite(o->reading[sensor][axis]))
+            continue;
+        sum += pow(o->sigma[sensor][axis], 2);
+        count++;
+    }
     return count > 0 ? sum / count : 0;
 }
 
@@ -267,12 +319,14 @@ static void add_coarse(const imk_calibrate_log *b, const imk_calibrate_record *l
 {
     const double share = 0.5;
     imki_text names = {0};
-    if (!b->result || log->record.means || log->procedure > IMK_PROCEDURE_FERRARIS)
+    if (!b->result || log->record.means || log->procedure == IMK_PROCEDURE_THERMAL ||
+        log->procedure == IMK_PROCEDURE_MAGNETOMETER)
         return;
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < log->record.axis_count[sensor]; i++) {
             const double square = rounding_square(log, sensor, i);
-            if (square > 0 && square > share * sigma_square(b, log, sensor, i))
+            const double whole = sigma_square(b, log, sensor, i);
+            if (whole > 0 && square > share * whole)
                 imki_list_item(&names, "%s_%c", imki_sensor_keys[sensor],
                                imk_axis_letter(log->body_axis[sensor][i]));
         }
@@ -284,6 +338,52 @@ static void add_coarse(const imk_calibrate_log *b, const imk_calibrate_record *l
                    "which more samples do not improve; log more digits or choose a smaller range",
                    log->path, names.bytes));
     free(names.bytes);
+}
+
+/* Positions in which the unit goes on turning; a few may be knocks. */
+static void add_creeping(const imk_calibrate_record *log, imk_verdict *v)
+{
+    const imk_procedure_findings *f = &log->findings;
+    const size_t few = 2;
+    const double share = 0.15;
+    if (f->creeping > few && (double)f->creeping > share * (double)f->intervals)
+        add(v, imki_calibrate_say(
+                   IMK_FINDING_WARNING, "creep",
+                   "%.150s: in %zu of %zu positions the accelerometers change steadily while the "
+                   "reference does not: the unit goes on turning, which the gyros feel, or the "
+                   "bias drifts; wait until the table stands, or clamp it",
+                   log->path, f->creeping, f->intervals));
+}
+
+/* Rests of the sensors in which no position of the reference was found. */
+static size_t rests_without_position(const imk_calibrate_log *b, const imk_calibrate_record *log)
+{
+    const imk_procedure_findings *f = &log->findings;
+    size_t without = 0;
+    for (size_t k = 0; k < log->interval_count; k++) {
+        bool found = false;
+        for (size_t i = f->first_observation; i < f->first_observation + f->observations; i++)
+            found = found || (b->calibration->observation[i].begin < log->interval[k].end &&
+                              b->calibration->observation[i].end > log->interval[k].begin);
+        without += !found;
+    }
+    return without;
+}
+
+static void add_moving_reference(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                                 imk_verdict *v)
+{
+    const double many = 0.2;
+    if (log->procedure != IMK_PROCEDURE_TUMBLE || log->record.means)
+        return;
+    const size_t without = rests_without_position(b, log);
+    if ((double)without > many * (double)log->interval_count)
+        add(v, imki_calibrate_say(
+                   IMK_FINDING_WARNING, "reference_moves",
+                   "%.150s: in %zu of %zu rests the reference is not constant for long enough, and "
+                   "they are not used: the table creeps, or the reference is too noisy or late; "
+                   "wait until the table stands, or clamp it",
+                   log->path, without, log->interval_count));
 }
 
 /* Few labels that the readings contradict: their holds are left out. */
@@ -366,13 +466,16 @@ static void add_placements(const imk_calibrate_log *b, imk_verdict *v)
                    IMK_FINDING_NOTE, "placement_untested",
                    "this log does not test the placements: their uncertainty is as --placement "
                    "states; put the unit on each face three times to test it"));
-    else if (imk_gamma_upper(0.5 * fit->degrees_of_freedom, 0.5 * fit->chi_square) < by_chance)
+    else if (imk_gamma_upper(0.5 * fit->degrees_of_freedom, 0.5 * fit->chi_square) < by_chance) {
+        char advice[80] = "";
+        if (fit->rms < imki_placement_most)
+            snprintf(advice, sizeof advice, ", or state --placement %.2gdeg", fit->rms * degrees);
         add(v, imki_calibrate_say(
                    IMK_FINDING_WARNING, "placement",
                    "the placements scatter by %.2g deg (1 sigma), %.2g times what --placement "
-                   "states: this is included in every uncertainty; check the faces and the plate, "
-                   "or state --placement %.2gdeg",
-                   fit->rms * degrees, fit->factor, fit->rms * degrees));
+                   "states: this is included in every uncertainty; check the faces and the plate%s",
+                   fit->rms * degrees, fit->factor, advice));
+    }
 }
 
 /* Slow noise of the sensor, which a table without times cannot show to be common to its rows. */
@@ -497,6 +600,8 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
         add_coarse(b, log, &v);
         add_lost(log, &v);
         add_contradicted(log, &v);
+        add_creeping(log, &v);
+        add_moving_reference(b, log, &v);
         add_thermal(&v, log);
         imki_turns_verdict(b, log, &v);
     }

@@ -157,7 +157,7 @@ static void add(imk_verdict *v, imki_calibrate_message message)
 static void add_other_moves(const imk_calibrate_record *log, imk_verdict *v)
 {
     const imk_turns_findings *f = &log->findings.known_turns;
-    char many[80] = "a move is", what[120];
+    char many[80] = "a move is", what[120], range[120] = "";
     if (f->other_moves == 0)
         return;
     if (f->other_moves > 1)
@@ -169,12 +169,44 @@ static void add_other_moves(const imk_calibrate_record *log, imk_verdict *v)
     else
         snprintf(what, sizeof what, "is by %.4g deg about %c, not by %.4g deg", angle,
                  imk_axis_letter(f->other_axis), due);
+    if (f->other_axis >= 0 && f->other_moves > 1)
+        snprintf(range, sizeof range,
+                 "; if all turns about %c read so, gyro_%c may have another range or unit",
+                 imk_axis_letter(f->other_axis), imk_axis_letter(f->other_axis));
     add(v, imki_calibrate_say(
                IMK_FINDING_NOTE, "other_move",
                "%s: %s left out: %s at %.2f s %s. If it was a turn, state its angle (--turn-angle, "
-               "or a label such as \"z %+.3gdeg\"), and turn about one axis of the unit only",
+               "or a label such as \"z %+.3gdeg\"), and turn about one axis of the unit only%s",
                log->path, many, f->other_moves > 1 ? "the first" : "that", begin, what,
-               f->other_axis < 0 ? due : angle));
+               f->other_axis < 0 ? due : angle, range));
+}
+
+/* Labels that name another axis than the gyro that reads the turn. */
+static void add_other_gyros(const imk_calibrate_record *log, imk_verdict *v)
+{
+    const imk_turns_findings *f = &log->findings.known_turns;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            const char label = imk_axis_letter(i), gyro = imk_axis_letter(j);
+            if (f->other_gyro[i][j] == 0 || (i > j && f->other_gyro[j][i] > 0))
+                continue;
+            if (f->other_gyro[j][i] > 0)
+                add(v, imki_calibrate_say(
+                           IMK_FINDING_WARNING, "swapped_axes",
+                           "%s: gyro_%c and gyro_%c look exchanged: %zu turns whose labels name "
+                           "%c are read by gyro_%c, and %zu that name %c by gyro_%c, and are left "
+                           "out; exchange the two names, in the header or with --columns, or "
+                           "correct the labels",
+                           log->path, label, gyro, f->other_gyro[i][j], label, gyro,
+                           f->other_gyro[j][i], gyro, label));
+            else
+                add(v,
+                    imki_calibrate_say(
+                        IMK_FINDING_WARNING, "swapped_axes",
+                        "%s: gyro_%c reads most of turns whose labels name %c (%zu of them, left "
+                        "out): correct the labels, or the names of the columns",
+                        log->path, gyro, label, f->other_gyro[i][j]));
+        }
 }
 
 /* By the solution, which leaves outliers out, where it has repetitions enough; else by the log. */
@@ -183,6 +215,8 @@ static void add_scatter(const imk_calibrate_log *b, const imk_calibrate_record *
     const double by_chance = 1e-3;
     const imk_group_fit *fit = &b->result->placement;
     imk_turns_findings f = log->findings.known_turns;
+    char advice[160] = "no mark is so far off: some turns were by another angle, or stopped on the "
+                       "way, or samples are missing in them";
     if (imki_has_only_turns(b) && b->count == 1 && fit->degrees_of_freedom >= 3) {
         f.freedom = fit->degrees_of_freedom;
         f.chi_square = fit->chi_square;
@@ -197,15 +231,19 @@ static void add_scatter(const imk_calibrate_log *b, const imk_calibrate_record *
                    "uncertainty is as --placement states, %.2g deg; turn about each axis three "
                    "times or more to test it",
                    log->path, log->settings.placement_sigma / degree));
-    else if (imk_gamma_upper(0.5 * f.freedom, 0.5 * f.chi_square) < by_chance)
-        add(v,
-            imki_calibrate_say(
-                IMK_FINDING_WARNING, "placement",
-                "%s: the angles of the turns scatter by %.2g deg (1 sigma), %.2g times what "
-                "--placement and the noise explain: the uncertainty of the scale factors "
-                "includes this; check the mark or the edge that the unit is turned to, or state "
-                "--placement %.2gdeg, which counts for the misalignments too",
-                log->path, f.scatter / degree, sqrt(f.chi_square / f.freedom), f.scatter / degree));
+    else if (imk_gamma_upper(0.5 * f.freedom, 0.5 * f.chi_square) < by_chance) {
+        if (f.scatter < imki_placement_most)
+            snprintf(advice, sizeof advice,
+                     "check the mark or the edge that the unit is turned to, or state --placement "
+                     "%.2gdeg, which counts for the misalignments too",
+                     f.scatter / degree);
+        add(v, imki_calibrate_say(
+                   IMK_FINDING_WARNING, "placement",
+                   "%s: the angles of the turns scatter by %.2g deg (1 sigma), %.2g times what "
+                   "--placement and the noise explain: the uncertainty of the scale factors "
+                   "includes this; %s",
+                   log->path, f.scatter / degree, sqrt(f.chi_square / f.freedom), advice));
+    }
 }
 
 /* Turns by another angle than stated, or about an axis that does not tell which these are. */
@@ -255,6 +293,7 @@ void imki_turns_verdict(const imk_calibrate_log *b, const imk_calibrate_record *
     if (log->procedure != IMK_PROCEDURE_TURNS || !b->result)
         return;
     add_other_moves(log, v);
+    add_other_gyros(log, v);
     if (f->saturated > 0 && !saturation_is_said(log))
         add(v, imki_calibrate_say(IMK_FINDING_WARNING, "saturated",
                                   "%s: in %zu turn%s a gyro is at the end of its range: left out; "

@@ -11,6 +11,9 @@ typedef struct imki_calibrate_message {
     char text[1200];
 } imki_calibrate_message;
 
+/* 1 sigma of placements and turns to a mark from which on they are something else [rad]: 1 deg. */
+static const double imki_placement_most = 0.017453292519943295;
+
 /* calibrate_log_text.c */
 imki_calibrate_message imki_calibrate_say(imk_finding_level level, const char *code,
                                           const char *format, ...)

@@ -12,13 +12,17 @@
 static const char of_reference[] = "an error of the reference, or of how the unit is mounted (it "
                                    "goes into bias, scale factor and misalignment)";
 
-static bool is_estimated(const imk_calibrate_log *b, int sensor)
+static bool is_estimated_term(const imk_calibrate_log *b, int sensor, int term)
 {
     for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
-        if (b->result->parameter[p].sensor == sensor &&
-            b->result->parameter[p].term == IMK_MODEL_SCALE_FACTOR)
+        if (b->result->parameter[p].sensor == sensor && b->result->parameter[p].term == term)
             return true;
     return false;
+}
+
+static bool is_estimated(const imk_calibrate_log *b, int sensor)
+{
+    return is_estimated_term(b, sensor, IMK_MODEL_SCALE_FACTOR);
 }
 
 /* A procedure of any record; `unnamed`: whose faces or poses have no labels. */
@@ -29,6 +33,57 @@ static bool has(const imk_calibrate_log *b, imk_procedure first, imk_procedure l
             !(unnamed && b->record[k].record.section))
             return true;
     return false;
+}
+
+/* Only these procedures: others would contradict what they cannot show. */
+static bool has_only(const imk_calibrate_log *b, imk_procedure one, imk_procedure other)
+{
+    for (size_t k = 0; k < b->count; k++)
+        if (b->record[k].procedure != one && b->record[k].procedure != other)
+            return false;
+    return true;
+}
+
+/* Is the unit turned both ways about each axis that it is turned about? */
+static bool turns_both_ways(const imk_calibrate_log *b)
+{
+    int ways[3] = {0};
+    for (size_t i = 0; i < b->calibration->observation_count; i++) {
+        const imk_observation *o = &b->calibration->observation[i];
+        int axis = 0;
+        for (int j = 1; j < 3; j++)
+            axis = fabs(o->rate[j]) > fabs(o->rate[axis]) ? j : axis;
+        if (o->turn_time > 0)
+            ways[axis] |= o->rate[axis] > 0 ? 1 : 2;
+    }
+    for (int j = 0; j < 3; j++)
+        if (ways[j] == 1 || ways[j] == 2)
+            return false;
+    return true;
+}
+
+/* Turns by known angles and nothing else to compare them with. */
+static void add_of_turns(const imk_calibrate_log *b, imki_text *list)
+{
+    if (!has_only(b, IMK_PROCEDURE_FERRARIS, IMK_PROCEDURE_TURNS))
+        return;
+    add_item(list, "all turns about an axis by the same angle too much or too little, or rows lost "
+                   "in turns and times made afterwards (the scale factor changes by as much)");
+    if (!turns_both_ways(b))
+        add_item(list, "asymmetry and K2 of gyros that are turned one way only (they go into the "
+                       "scale factor)");
+}
+
+/* On the faces of a housing. */
+static void add_of_faces(const imk_calibrate_log *b, imki_text *list)
+{
+    if (!has_only(b, IMK_PROCEDURE_SIXPOSITION, IMK_PROCEDURE_FERRARIS))
+        return;
+    add_item(list, "a tilted plate, faces that are not square, or a unit that slips in its housing "
+                   "(they go into the misalignments; --placement and --mounting count in their "
+                   "uncertainty)");
+    if (!is_estimated_term(b, 1, IMK_MODEL_K2))
+        add_item(list, "K2 and K3 of the accelerometers (they go into bias and scale factor)");
 }
 
 /* With references the rates and forces are known: a clock takes no part. */
@@ -46,6 +101,8 @@ static void add_of_gyros(const imk_calibrate_log *b, imki_text *list)
     if (b->nominal[0] && imki_has_only_turns(b))
         add_item(list, "turns by another angle than stated (the sensitivity found is wrong by as "
                        "much)");
+    else
+        add_of_turns(b, list);
     if (imk_calibrate_find(b, across) >= 0 &&
         has(b, IMK_PROCEDURE_TURNS, IMK_PROCEDURE_TURNS, false))
         add_item(list, "turns about axes that are not quite those of the unit (the misalignments "
@@ -111,6 +168,10 @@ static void add_of_gravity(const imk_calibrate_log *b, imki_text *list)
         return;
     add_item(list, "gravity that is some per cent off (the scale factors of all "
                    "accelerometers change by as much)");
+    add_of_faces(b, list);
+    if (is_estimated_term(b, 0, IMK_MODEL_G_SENSITIVITY) && b->settings.place_known)
+        add_item(list, "the sign of the latitude (g-sensitivity of each gyro to the force along "
+                       "it)");
     if (has(b, IMK_PROCEDURE_RATE_TABLE, IMK_PROCEDURE_SPIN, false))
         return;
     if (has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_MULTIPOSITION, false) ||
@@ -142,6 +203,13 @@ static void add_of_magnetometer(const imk_calibrate_log *b, imki_text *list)
         add_item(list, "signs and order of the magnetometer's axes");
 }
 
+static void add_of_thermometer(const imk_calibrate_log *b, imki_text *list)
+{
+    if (has(b, IMK_PROCEDURE_THERMAL, IMK_PROCEDURE_THERMAL, false))
+        add_item(list, "a thermometer with a wrong scale, such as degrees Fahrenheit written as "
+                       "degrees Celsius (the coefficients change by as much)");
+}
+
 void imki_untestable(const imk_calibrate_log *b, imk_verdict *v)
 {
     imki_text list = {0};
@@ -149,6 +217,7 @@ void imki_untestable(const imk_calibrate_log *b, imk_verdict *v)
     add_of_gravity(b, &list);
     add_of_single_attitudes(b, &list);
     add_of_magnetometer(b, &list);
+    add_of_thermometer(b, &list);
     if (list.bytes)
         imki_verdict_add(v, IMK_FINDING_NOTE, "not_testable", "Cannot be seen in %s: %s",
                          b->count == 1 ? "this log" : "these logs", list.bytes);
