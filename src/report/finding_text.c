@@ -495,9 +495,7 @@ static const struct message {
     {"calibrate:reference_offset",
      "{record}: the {name} readings are {0.3g} s {1?}behind{1!}ahead of{?} the columns {other} (1 "
      "sigma {2.2g} s), and the ends of steps that are left out are shorter: the clocks of both "
-     "differ; "
-     ""
-     "shift the columns by as much"},
+     "differ; shift the columns by as much"},
     {"calibrate:reference_force",
      "{record}: at rest the reference_force columns are {0.4g} m/s^2, and gravity is 9.81: "
      "{1?}they look like {name}; correct the unit in the header{1!}check their unit{?}"},
