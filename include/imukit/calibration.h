@@ -196,6 +196,8 @@ typedef struct imk_calibration_result {
                                 agreement with placement_sigma, factor (1 or more), rms: the 1 sigma
                                 of a placement that the log itself shows [rad]; 0 degrees: the log
                                 does not test it */
+    double turn_chi_square, turn_freedom; /**< the part of `placement` that is of turns
+                                             (imk_observation.turn_time) */
     imk_group_fit assumed; /**< the same of parameters whose prior_sigma is guessed; the factor may
                               be below 1 */
     double chi_square, degrees_of_freedom; /**< of all observations, by their stated sigmas */
@@ -239,6 +241,12 @@ IMK_API imk_status imk_calibration_information(const imk_calibration *calibratio
 /** Half width of the interval of parameter `index` for a confidence, such as 0.95. */
 IMK_API double imk_calibration_half_width(const imk_calibration_result *result, int index,
                                           double confidence);
+
+/** Probability of placements that scatter as much as these when they are as good as stated: doubt
+ *  placement_sigma below 1e-3. A turn and the hold before it may be one placement, so holds and
+ *  turns are looked at by themselves: twice the smaller probability, where there are both.
+ *  @return NaN with fewer than 1 degree of freedom: the log does not test them */
+IMK_API double imk_calibration_placement_probability(const imk_calibration_result *result);
 
 /** Convert a model (and, when not NULL, the covariance of `count` of its parameters) from its frame
  *  to another: the responses of both triads are multiplied by the rotation that gives the response

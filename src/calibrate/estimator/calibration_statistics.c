@@ -162,8 +162,16 @@ imki_group_sum imki_sum_group(const imki_estimator *e, const imki_fit *fit, int 
 void imki_fit_groups(imki_estimator *e, imki_fit *fit)
 {
     memset(fit, 0, sizeof *fit);
-    for (size_t k = 0; k < imki_things(e); k++)
+    for (size_t k = 0; k < imki_things(e); k++) {
+        const double square = fit->square[IMKI_PART_PLACEMENT],
+                     redundancy = fit->redundancy[IMKI_PART_PLACEMENT];
+        const bool placed = k >= e->items && k < e->items + e->observations;
         add_to_fit(e, imki_rows_of(e, k), fit);
+        if (placed && e->problem->observation[k - e->items].turn_time > 0.0) {
+            fit->turn_square += fit->square[IMKI_PART_PLACEMENT] - square;
+            fit->turn_redundancy += fit->redundancy[IMKI_PART_PLACEMENT] - redundancy;
+        }
+    }
     imki_slow_noise_fit(e, fit);
 }
 

@@ -217,6 +217,7 @@ typedef struct imki_fit {
     double excess[IMKI_PARTS], scaled[IMKI_PARTS]; /* for a first factor^2: sums of residual^2 less
                                       what is known of it, and of sigma^2 (1 - M_ii) */
     bool estimated[IMKI_PARTS];                    /* the factor; else it is 1 */
+    double turn_square, turn_redundancy;           /* of placements: those of turns */
     double slow_square[IMKI_PARTS]; /* what slow noise is expected to add to shared_square */
 } imki_fit;
 /* Squared distances of an item's rows, by group, from what the others predict, over their variance:

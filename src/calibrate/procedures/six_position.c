@@ -113,6 +113,39 @@ static bool is_coarse(const imk_test_record *record, const imki_session_stretche
     return coarse;
 }
 
+/* Mean of two holds, by their samples. */
+static void pool(imk_static_interval *to, const imk_static_interval *more, double *samples)
+{
+    const double own = *samples, other = (double)(more->end - more->begin), all = own + other;
+    for (int s = 0; s < 2; s++)
+        for (int i = 0; i < IMK_AXES_MAX; i++) {
+            const double a = own * to->sigma[s][i] / all, b = other * more->sigma[s][i] / all;
+            to->mean[s][i] = (own * to->mean[s][i] + other * more->mean[s][i]) / all;
+            to->sigma[s][i] = sqrt(a * a + b * b);
+            to->rounding[s][i] = fmax(to->rounding[s][i], more->rounding[s][i]);
+        }
+    to->temperature = (own * to->temperature + other * more->temperature) / all;
+    to->temperature_rate = (own * to->temperature_rate + other * more->temperature_rate) / all;
+    *samples = all;
+}
+
+/* What a placement reads: in its hold, and in those that turns led to from there. Holds are in
+ * order of time. */
+static imk_static_interval of_placement(const imki_session_stretches *list, size_t hold)
+{
+    imk_static_interval summary = list->stretch[hold].summary;
+    double samples = (double)(summary.end - summary.begin);
+    for (size_t k = hold + 1; k < list->count; k++) {
+        const imki_session_stretch *next = &list->stretch[k];
+        if (next->at.turn)
+            continue;
+        if (!next->again)
+            break;
+        pool(&summary, &next->summary, &samples);
+    }
+    return summary;
+}
+
 /* Smallest eigenvalue of the mean outer product of the directions of holds: of axes, the smallest
  * share of the holds. */
 static double spread_of(const imki_session_stretches *list)
@@ -146,21 +179,20 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_sessio
     c->frame = IMK_FRAME_REFERENCE;
     size_t holds = 0;
     for (size_t k = 0; k < list->count; k++)
-        holds += !list->stretch[k].at.turn;
+        holds += !list->stretch[k].at.turn && !list->stretch[k].again;
     c->gyro_coarse = c->gyro_coarse || is_coarse(c->record[call->record], list, holds);
     for (size_t k = 0; k < list->count; k++) {
         const imki_session_stretch *stretch = &list->stretch[k];
-        if (stretch->at.turn)
+        if (stretch->at.turn || stretch->again)
             continue;
+        const imk_static_interval summary = of_placement(list, k);
         imk_observation observation = {
             .knowledge = settings->placement_sigma > 0.0 ? IMK_INPUT_PLACED : IMK_INPUT_KNOWN,
             .record = call->record,
             .begin = stretch->at.begin,
             .end = stretch->at.end,
-            .temperature = stretch->summary.temperature,
-            .temperature_rate = isfinite(stretch->summary.temperature_rate)
-                                    ? stretch->summary.temperature_rate
-                                    : 0.0,
+            .temperature = summary.temperature,
+            .temperature_rate = isfinite(summary.temperature_rate) ? summary.temperature_rate : 0.0,
             .placement_sigma = settings->placement_sigma,
             .fixture = *fixture,
             .correlated = c->record[call->record]->means};
@@ -168,7 +200,7 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_sessio
         up[stretch->at.axis] = stretch->at.sense;
         observation.force[stretch->at.axis] = stretch->at.sense * c->gravity;
         imki_earth_at_rest(c, up, observation.rate, earth_sigma);
-        set_readings(call, &stretch->summary, holds, earth_sigma, &observation);
+        set_readings(call, &summary, holds, earth_sigma, &observation);
         (void)imk_calibration_observe(c, &observation);
     }
     call->findings->intervals += list->found;
