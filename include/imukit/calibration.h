@@ -32,7 +32,11 @@
 
 IMK_BEGIN_C
 
-enum { IMK_TEST_RECORDS_MAX = 64, IMK_FIXTURES_MAX = 8 };
+enum {
+    IMK_TEST_RECORDS_MAX = 64,
+    IMK_FIXTURES_MAX = 8,
+    IMK_OFFSETS_MAX = 24 /**< gyros of records that state an offset_sigma, together */
+};
 
 /** Convention that fixes the rotation of the triads, which |g| alone does not determine. Both
  *  triads share the body frame. */
@@ -76,6 +80,15 @@ typedef struct imk_observation {
     double temperature;              /**< [K]; NaN: not known, the polynomials vanish */
     double temperature_rate;         /**< [K/s] */
     double placement_sigma;          /**< [rad] */
+    double heading_variance[IMK_AXES_MAX]; /**< of gyros: what the Earth's rate at a heading that is
+                           not known adds to the variance of a reading [rad^2/s^2]. No factor
+                           multiplies it */
+    bool heading_depends; /**< false: the heading is that of this observation alone; true: it may be
+                           that of others too, so that heading_variance is a bound and residuals
+                           need not show it */
+    double offset_sigma;  /**< 1 sigma of what the readings of a gyro in all observations of the
+                            record that state it are off by together, as by g-sensitivity in an
+                            attitude that is not known [rad/s]; 0: nothing */
     double turn_time; /**< of a turn that begins and ends at stops that are placed [s]: its rate,
                            besides, is off by the placement's angle about it over this time; 0: none
                            */

@@ -198,8 +198,9 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
                             imki_row *rows)
 {
     const imk_calibration *problem = e->problem;
+    const imk_observation *observation = &problem->observation[index];
     const int first = e->local_first[index];
-    const bool moving = problem->observation[index].moving;
+    const bool moving = observation->moving;
     exposure x;
     int count = 0;
     expose(e, point, index, &x);
@@ -223,7 +224,12 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
                 row->sigma = e->added[sensor];
             }
             row->locals = row->globals = 0;
-            predict(e, &problem->observation[index], &x, &y, reading, row);
+            predict(e, observation, &x, &y, reading, row);
+            if (sensor == IMK_GYRO && observation->offset_sigma > 0.0) {
+                const int offset = e->offset_global[observation->record] + axis;
+                row->residual -= point->global[offset];
+                add_global(row, offset, 1.0);
+            }
             if (!x.gravity) {
                 by_rotations(&x, &y, first, row);
                 continue;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The estimator's working state. Unknowns are of two kinds:
  *
- *   globals  parameters, then three angles of each fixture whose mounting is not exact, then the
- *            vertical part of the Earth's rate when the latitude is not known
+ *   globals  parameters, then three angles of each fixture whose mounting is not exact, then what
+ *            the gyros of a record are off by together, then the vertical part of the Earth's rate
+ *            when the latitude is not known
  *   locals   two angles of each direction of gravity, three of each placement; where turns join
  *            rests and it matters, two components of the Earth's horizontal rate at a rest
  *            (calibration_earth.c); turns tie the locals of two observations, so that their normal
@@ -16,7 +17,7 @@
 #include "calibration_internal.h"
 
 enum {
-    IMKI_GLOBALS_MAX = IMK_CORRELATED_MAX + 3 * IMK_FIXTURES_MAX + 1,
+    IMKI_GLOBALS_MAX = IMK_CORRELATED_MAX + 3 * IMK_FIXTURES_MAX + IMK_OFFSETS_MAX + 1,
     IMKI_ROWS_MAX = 2 * IMK_AXES_MAX,
     IMKI_LOCALS_OF_ROW = 6
 };
@@ -97,8 +98,10 @@ typedef struct imki_estimator {
     double *place[IMK_CORRELATED_MAX]; /* in the model */
     int axis_parameters[2][IMK_AXES_MAX];
     uint8_t axis_parameter[2][IMK_AXES_MAX][IMK_CORRELATED_MAX];
-    int fixture_global[IMK_FIXTURES_MAX]; /* first of its angles; -1: exact */
-    int vertical_global;                  /* -1: the latitude is known, or nothing depends on it */
+    int fixture_global[IMK_FIXTURES_MAX];    /* first of its angles; -1: exact */
+    int offset_global[IMK_TEST_RECORDS_MAX]; /* first of its gyros; -1: none */
+    double offset_sigma[IMK_TEST_RECORDS_MAX];
+    int vertical_global; /* -1: the latitude is known, or nothing depends on it */
     double vertical_rate, vertical_sigma, horizontal_variance; /* of the Earth at rest */
     int *local_first;                                          /* per observation; -1: none */
     bool *earth; /* per observation: its third and fourth local are the Earth's horizontal rate */

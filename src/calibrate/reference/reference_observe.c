@@ -310,6 +310,7 @@ static imk_status add_stretches(const observed *o)
             continue;
         }
         input_of(o, s, &made);
+        made.offset_sigma = imki_reference_offset_sigma(o->call, &made);
         if (o->call->procedure == IMK_PROCEDURE_TUMBLE &&
             o->call->settings->placement_sigma > 0.0) {
             made.knowledge = IMK_INPUT_PLACED;
