@@ -219,6 +219,9 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
             row->axis = axis;
             row->sigma = e->sigma[index][sensor][axis];
             row->known_variance = sensor == IMK_GYRO ? e->known_variance[index][axis] : 0.0;
+            row->at_most = sensor == IMK_GYRO && observation->heading_depends
+                               ? observation->heading_variance[axis]
+                               : 0.0;
             if (e->added[sensor] > 0.0 && !moving) {
                 row->known_variance += row->sigma * row->sigma;
                 row->sigma = e->added[sensor];

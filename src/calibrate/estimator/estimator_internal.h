@@ -43,6 +43,7 @@ typedef struct imki_row {
     int sensor, axis;       /* of a reading; axis is the component of a turn */
     double residual, sigma; /* [unit], sigma as stated */
     double known_variance;  /* besides, which no factor multiplies: the Earth's horizontal rate */
+    double at_most;         /* of that: a bound, which residuals need not show */
     double share;           /* of the variance that the factor multiplies */
     int locals;
     size_t local[IMKI_LOCALS_OF_ROW];
@@ -213,7 +214,8 @@ typedef struct imki_fit {
     double square[IMKI_PARTS];     /* of residuals over their sigma */
     double redundancy[IMKI_PARTS]; /* what the fit left of their number */
     double shared_square[IMKI_PARTS], shared_redundancy[IMKI_PARTS]; /* each row by the share of its
-                                      variance that the factor multiplies */
+                                      variance that the factor multiplies, and of the redundancy
+                                      without what residuals need not show */
     double
         stated[IMKI_PARTS]; /* redundancy, each row by the share of its variance that is stated */
     double freedom[IMKI_PARTS]; /* degrees of freedom of the factor: by the square of the share */

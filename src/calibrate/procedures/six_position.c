@@ -7,7 +7,7 @@
  *     w = W sin(latitude) up + W cos(latitude) north
  *
  * of which the heading of the unit, and so its direction to the north, is not known: that part adds
- * W cos(latitude)/sqrt(2) to the sigma of both gyros across the vertical. */
+ * (W cos(latitude))^2/2 to the variance of both gyros across the vertical. */
 #include "six_position_internal.h"
 
 #include "base/refuse_internal.h"
@@ -83,11 +83,8 @@ static void set_readings(const imki_procedure_call *call, const imk_static_inter
                 sigma = smallest_sigma(model, record, s, i);
             if (s == IMK_GYRO)
                 sigma = add_rounding(sigma, hold, holds, i);
-            if (s == IMK_GYRO && i < 3) {
-                const double earth =
-                    earth_sigma[i] * fabs(imki_counts_per_unit(model, record, s, i));
-                sigma = sqrt(sigma * sigma + earth * earth);
-            }
+            if (s == IMK_GYRO && i < 3)
+                observation->heading_variance[i] = earth_sigma[i] * earth_sigma[i];
             observation->reading[s][i] = hold->mean[s][i];
             observation->sigma[s][i] = sigma;
         }

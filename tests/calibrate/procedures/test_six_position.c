@@ -414,6 +414,28 @@ static void test_pooled_holds(void **state)
     session_free(b);
 }
 
+/* The heading is not part of what a factor multiplies: the variance of the Earth's rate across the
+ * vertical is stated beside the noise. */
+static void test_heading(void **state)
+{
+    (void)state;
+    const session_plan plan = {.rounds = 1, .hold = 8};
+    const double level = BENCH_EARTH_RATE * cos(BENCH_LATITUDE);
+    session *b = session_new();
+    imk_error error;
+    double square[2] = {0.0}; /* of the noise: along the vertical, across */
+    assert_true(session_run(b, &plan, IMK_PROCEDURE_SIXPOSITION, 1, 0, &error));
+    for (size_t k = 0; k < 6; k++)
+        for (size_t i = 0; i < 3; i++) {
+            const imk_observation *o = &b->observation[k];
+            const bool across = i != k / 2;
+            CHECK_CLOSE(o->heading_variance[i], across ? 0.5 * level * level : 0.0, 1e-20);
+            square[across] += o->sigma[IMK_GYRO][i] * o->sigma[IMK_GYRO][i] / (across ? 12.0 : 6.0);
+        }
+    CHECK_RELATIVE(square[1], square[0], 0.3);
+    session_free(b);
+}
+
 /* A turn and the hold before it may be one placement, which is no reason for a doubt: of two groups
  * the smaller probability counts twice. */
 static void test_probability_of_placements(void **state)
@@ -486,6 +508,7 @@ int main(void)
                                        cmocka_unit_test(test_coverage_exact),
                                        cmocka_unit_test(test_turned_where_it_lies),
                                        cmocka_unit_test(test_pooled_holds),
+                                       cmocka_unit_test(test_heading),
                                        cmocka_unit_test(test_probability_of_placements),
                                        cmocka_unit_test(test_coverage_ferraris),
                                        cmocka_unit_test(test_bad_holds_refused),
