@@ -10,7 +10,8 @@
  * whose noise is 1 : 4 : 16, where every hold is off by as much on each axis, some times the noise
  * of the quietest, both together, and with a unit that is placed worse than stated: on its fixture,
  * or in each face. Every unit has a g-sensitivity of 20 deg/h/g; some programmes do not tell it
- * from the bias, or do not estimate it. */
+ * from the bias, or do not estimate it. In the last ones the Earth turns, and the calibration does
+ * not know the heading of the unit, or knows no more than the rate of the table. */
 #include "../tests/calibrate/coverage.h"
 #include "../tests/calibrate/reference_session.h"
 
@@ -21,17 +22,27 @@ static const struct {
     imk_procedure procedure;
     void (*programme)(session *);
     bool without_g;
+    session_earth earth;
 } programmes[] = {
-    {"rate-table, steps", IMK_PROCEDURE_RATE_TABLE, session_rate_steps, false},
-    {"rate-table, sine", IMK_PROCEDURE_RATE_TABLE, session_rate_sine, false},
-    {"tumble", IMK_PROCEDURE_TUMBLE, session_tumble, false},
-    {"centrifuge", IMK_PROCEDURE_CENTRIFUGE, session_centrifuge, false},
-    {"spin", IMK_PROCEDURE_SPIN, session_spin, false},
-    {"rate-table, steps, three attitudes", IMK_PROCEDURE_RATE_TABLE, session_rate_upright, false},
+    {"rate-table, steps", IMK_PROCEDURE_RATE_TABLE, session_rate_steps, false, SESSION_NO_EARTH},
+    {"rate-table, sine", IMK_PROCEDURE_RATE_TABLE, session_rate_sine, false, SESSION_NO_EARTH},
+    {"tumble", IMK_PROCEDURE_TUMBLE, session_tumble, false, SESSION_NO_EARTH},
+    {"centrifuge", IMK_PROCEDURE_CENTRIFUGE, session_centrifuge, false, SESSION_NO_EARTH},
+    {"spin", IMK_PROCEDURE_SPIN, session_spin, false, SESSION_NO_EARTH},
+    {"rate-table, steps, three attitudes", IMK_PROCEDURE_RATE_TABLE, session_rate_upright, false,
+     SESSION_NO_EARTH},
     {"rate-table, steps, three attitudes, g-sensitivity not estimated", IMK_PROCEDURE_RATE_TABLE,
-     session_rate_upright, true},
-    {"tumble, g-sensitivity not estimated", IMK_PROCEDURE_TUMBLE, session_tumble, true},
-    {"centrifuge, g-sensitivity not estimated", IMK_PROCEDURE_CENTRIFUGE, session_centrifuge, true},
+     session_rate_upright, true, SESSION_NO_EARTH},
+    {"tumble, g-sensitivity not estimated", IMK_PROCEDURE_TUMBLE, session_tumble, true,
+     SESSION_NO_EARTH},
+    {"centrifuge, g-sensitivity not estimated", IMK_PROCEDURE_CENTRIFUGE, session_centrifuge, true,
+     SESSION_NO_EARTH},
+    {"tumble, forces alone, one heading", IMK_PROCEDURE_TUMBLE, session_tumble, false,
+     SESSION_ONE_HEADING},
+    {"tumble, forces alone, another heading in each hold", IMK_PROCEDURE_TUMBLE, session_tumble,
+     false, SESSION_HEADINGS},
+    {"rate-table, steps, gyros alone and the rate of the table", IMK_PROCEDURE_RATE_TABLE,
+     session_rate_one, false, SESSION_TABLE},
 };
 
 static const struct {
@@ -51,9 +62,13 @@ static const struct {
                .placement = 0.3 * DEGREE, .stated = 1.0 / 3.0}};
 
 /* Only a tumble is told how well it is placed in each hold; where the g-sensitivity is not
- * estimated, errors of holds are what may be taken for it. */
+ * estimated, errors of holds are what may be taken for it; where the Earth's rate is not known, the
+ * scatter of the readings is what may be taken for it. */
 static bool has_fault(size_t which, size_t fault)
 {
+    if (programmes[which].earth != SESSION_NO_EARTH &&
+        (faults[fault].bad > 0.0 || faults[fault].mounting > 0.0 || faults[fault].placement > 0.0))
+        return false;
     if (programmes[which].without_g && fault > 0 && !(faults[fault].push[0] > 0.0))
         return false;
     return !(faults[fault].placement > 0.0) || programmes[which].procedure == IMK_PROCEDURE_TUMBLE;
@@ -67,6 +82,7 @@ static void run(size_t which, size_t fault, size_t benches, uint64_t seed)
         return;
     session_start(b, programmes[which].procedure, programmes[which].programme);
     b->settings.g_sensitivity = !programmes[which].without_g;
+    b->earth = programmes[which].earth;
     if (b->procedure == IMK_PROCEDURE_TUMBLE)
         b->settings.nonlinear = true;
     if (b->procedure == IMK_PROCEDURE_RATE_TABLE)

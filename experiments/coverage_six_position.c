@@ -92,7 +92,13 @@ int main(int argc, char **argv)
          {.rounds = 3, .hold = 8, .turn = 6, .placement = 1.7e-3, .unequal = 2.0, .push = 3e-3}},
         {"axes 1 : 4 : 16, equal pose errors: ferraris, three times, placement 0.1 deg",
          IMK_PROCEDURE_FERRARIS,
-         {.rounds = 3, .hold = 8, .turn = 6, .placement = 1.7e-3, .unequal = 4.0, .push = 3e-3}}};
+         {.rounds = 3, .hold = 8, .turn = 6, .placement = 1.7e-3, .unequal = 4.0, .push = 3e-3}},
+        {"ferraris without labels, a rest after each turn, placement 0.1 deg",
+         IMK_PROCEDURE_FERRARIS,
+         {.rounds = 1, .hold = 5, .turn = 6, .placement = 1.7e-3, .unlabelled = true}},
+        {"ferraris without labels, three times, a rest after each turn, placement 0.1 deg",
+         IMK_PROCEDURE_FERRARIS,
+         {.rounds = 3, .hold = 5, .turn = 6, .placement = 1.7e-3, .unlabelled = true}}};
     const int benches = argc > 1 ? atoi(argv[1]) : 3000;
     const uint64_t seed = argc > 2 ? (uint64_t)atoll(argv[2]) : 1;
     const size_t only = argc > 3 ? (size_t)atoi(argv[3]) : sizeof plans;

@@ -32,7 +32,11 @@
 
 IMK_BEGIN_C
 
-enum { IMK_TEST_RECORDS_MAX = 64, IMK_FIXTURES_MAX = 8 };
+enum {
+    IMK_TEST_RECORDS_MAX = 64,
+    IMK_FIXTURES_MAX = 8,
+    IMK_OFFSETS_MAX = 24 /**< gyros of records that state an offset_sigma, together */
+};
 
 /** Convention that fixes the rotation of the triads, which |g| alone does not determine. Both
  *  triads share the body frame. */
@@ -76,6 +80,15 @@ typedef struct imk_observation {
     double temperature;              /**< [K]; NaN: not known, the polynomials vanish */
     double temperature_rate;         /**< [K/s] */
     double placement_sigma;          /**< [rad] */
+    double heading_variance[IMK_AXES_MAX]; /**< of gyros: what the Earth's rate at a heading that is
+                           not known adds to the variance of a reading [rad^2/s^2]. No factor
+                           multiplies it */
+    bool heading_depends; /**< false: the heading is that of this observation alone; true: it may be
+                           that of others too, so that heading_variance is a bound and residuals
+                           need not show it */
+    double offset_sigma;  /**< 1 sigma of what the readings of a gyro in all observations of the
+                            record that state it are off by together, as by g-sensitivity in an
+                            attitude that is not known [rad/s]; 0: nothing */
     double turn_time; /**< of a turn that begins and ends at stops that are placed [s]: its rate,
                            besides, is off by the placement's angle about it over this time; 0: none
                            */
@@ -196,6 +209,8 @@ typedef struct imk_calibration_result {
                                 agreement with placement_sigma, factor (1 or more), rms: the 1 sigma
                                 of a placement that the log itself shows [rad]; 0 degrees: the log
                                 does not test it */
+    double turn_chi_square, turn_freedom; /**< the part of `placement` that is of turns
+                                             (imk_observation.turn_time) */
     imk_group_fit assumed; /**< the same of parameters whose prior_sigma is guessed; the factor may
                               be below 1 */
     double chi_square, degrees_of_freedom; /**< of all observations, by their stated sigmas */
@@ -239,6 +254,12 @@ IMK_API imk_status imk_calibration_information(const imk_calibration *calibratio
 /** Half width of the interval of parameter `index` for a confidence, such as 0.95. */
 IMK_API double imk_calibration_half_width(const imk_calibration_result *result, int index,
                                           double confidence);
+
+/** Probability of placements that scatter as much as these when they are as good as stated: doubt
+ *  placement_sigma below 1e-3. A turn and the hold before it may be one placement, so holds and
+ *  turns are looked at by themselves: twice the smaller probability, where there are both.
+ *  @return NaN with fewer than 1 degree of freedom: the log does not test them */
+IMK_API double imk_calibration_placement_probability(const imk_calibration_result *result);
 
 /** Convert a model (and, when not NULL, the covariance of `count` of its parameters) from its frame
  *  to another: the responses of both triads are multiplied by the rotation that gives the response

@@ -24,6 +24,8 @@ typedef struct imk_test_record {
      *  the samples, nominal body axes; rate in inertial space [rad/s], specific force, gravity
      *  included [m/s^2]. NULL: not known. */
     const double *reference_rate[3], *reference_force[3];
+    bool reference_on_ground; /**< reference_rate is relative to the ground, as a table tells it:
+                                 the Earth's rate is not in it */
     const double *reference_acceleration[3]; /**< angular [rad/s^2]; NULL: zero */
     const int *section; /**< per sample: index of the label of a section, -1: none; NULL: none */
     size_t section_count;

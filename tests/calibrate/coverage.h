@@ -58,9 +58,7 @@ static inline bool coverage_doubts(const imk_calibration *calibration,
 {
     imk_diagnostic_finding found[16];
     const size_t count = imk_solution_diagnostics(calibration, result, 16, found);
-    const imk_group_fit *p = &result->placement;
-    bool doubts = p->degrees_of_freedom >= 1.0 &&
-                  imk_gamma_upper(0.5 * p->degrees_of_freedom, 0.5 * p->chi_square) < 1e-3;
+    bool doubts = imk_calibration_placement_probability(result) < 1e-3;
     for (size_t i = 0; i < count; i++)
         doubts = doubts || (found[i].kind == IMK_DIAGNOSTIC_RESIDUALS && found[i].value > 100.0) ||
                  found[i].kind == IMK_DIAGNOSTIC_UNEQUAL_AXES ||

@@ -15,6 +15,16 @@ enum { BENCH_SAMPLES = 40000, BENCH_OBSERVATIONS = 21000, BENCH_HOLDS = 200 };
 static const double session_rate = 100.0, session_gravity = 9.80665,
                     session_pi = 3.14159265358979323846;
 
+/* Does the unit feel the Earth turn, and what is the calibration told? */
+typedef enum session_earth {
+    SESSION_NO_EARTH = 0,
+    SESSION_ONE_HEADING, /* forces and the latitude; the heading of the head's axis is one for all
+                            holds */
+    SESSION_HEADINGS,    /* the same, another heading in each hold */
+    SESSION_TABLE        /* the rates of the table, relative to the ground: no forces, no
+                            accelerometers, and the g-sensitivity is as large as it is assumed */
+} session_earth;
+
 /* A programme, and the log of one unit in it. */
 typedef struct session {
     imk_procedure procedure;
@@ -32,6 +42,7 @@ typedef struct session {
                                    [rad]; the calibration is told `stated` of them */
     double stated;
     bool noise_known; /* the calibration is told the noise */
+    session_earth earth;
     imk_test_record record;
     imk_procedure_settings settings;
     imk_calibration calibration;
@@ -105,6 +116,19 @@ static inline void session_rate_upright(session *b)
                 session_go(b, rate, force, 0.5, 3.0);
             }
     }
+}
+
+/* Only z, upright. */
+static inline void session_rate_one(session *b)
+{
+    static const double level[] = {0.0, 0.3, 0.8, 1.5, 2.2, 3.0};
+    double rate[3], force[3];
+    session_along(2, session_gravity, force);
+    for (int i = 0; i < 6; i++)
+        for (int sign = 1; sign >= (i > 0 ? -1 : 1); sign -= 2) {
+            session_along(2, sign * level[i], rate);
+            session_go(b, rate, force, 0.5, 3.0);
+        }
 }
 
 /* Each axis: rest, sines of two frequencies, rest. */
@@ -367,6 +391,82 @@ static inline void session_misplace(session *b, uint64_t seed, double sign)
     }
 }
 
+/* ---- the Earth ----------------------------------------------------------------------------------
+ */
+
+static const double session_latitude = 0.7, session_earth_rate = 7.292115e-5;
+
+/* The Earth's rate on a dividing head: along the force, and level at an angle to the axis of the
+ * head, which is x, then y, then z. */
+static inline void session_head_rate(const session *b, size_t k, size_t hold, double heading,
+                                     double rate[3])
+{
+    const size_t along = hold / 12;
+    const double up = session_earth_rate * sin(session_latitude),
+                 level = session_earth_rate * cos(session_latitude);
+    double u[3], first[3], size = 0.0, length = 0.0;
+    for (size_t j = 0; j < 3; j++)
+        size += b->force[j][k] * b->force[j][k];
+    for (size_t j = 0; j < 3; j++)
+        u[j] = b->force[j][k] / sqrt(size);
+    for (size_t j = 0; j < 3; j++)
+        first[j] = (j == along) - u[along] * u[j];
+    for (size_t j = 0; j < 3; j++)
+        length += first[j] * first[j];
+    for (size_t j = 0; j < 3; j++) {
+        const double second =
+            u[(j + 1) % 3] * first[(j + 2) % 3] - u[(j + 2) % 3] * first[(j + 1) % 3];
+        rate[j] =
+            up * u[j] + level * (cos(heading) * first[j] + sin(heading) * second) / sqrt(length);
+    }
+}
+
+/* Let the Earth turn the unit; with the sign -1 it does not any more. */
+static inline void session_turn(session *b, uint64_t seed, double sign)
+{
+    double draw[BENCH_HOLDS], angle = 0.0; /* 0 … 1, by the normal distribution */
+    imk_random_normals(imk_random_seeded(seed), imk_stream(0, 905, 0, 0), 0, BENCH_HOLDS, draw);
+    for (size_t h = 0; h < BENCH_HOLDS; h++)
+        draw[h] = 0.5 * erfc(draw[h] / sqrt(2.0));
+    for (size_t k = 0, hold = 0; b->earth != SESSION_NO_EARTH && k < b->count; k++) {
+        double rate[3];
+        hold += hold + 1 < b->holds && k >= b->hold_end[hold];
+        if (b->earth == SESSION_TABLE) {
+            const double up = 2.0 * draw[0] - 1.0, level = sqrt(1.0 - up * up);
+            rate[0] = session_earth_rate * level * cos(2.0 * session_pi * draw[1] - angle);
+            rate[1] = session_earth_rate * level * sin(2.0 * session_pi * draw[1] - angle);
+            rate[2] = session_earth_rate * up;
+            angle += b->rate[2][k] / session_rate;
+        } else {
+            const double turn = draw[b->earth == SESSION_HEADINGS ? hold : 0];
+            session_head_rate(b, k, hold, 2.0 * session_pi * turn, rate);
+        }
+        for (int j = 0; j < 3; j++)
+            b->slow[j][k] = rate[j];
+    }
+    for (int j = 0; b->earth != SESSION_NO_EARTH && j < 3; j++)
+        for (size_t k = 0; k < b->count; k++)
+            b->rate[j][k] += sign * b->slow[j][k];
+}
+
+/* What the calibration is told of such a bench. */
+static inline void session_tell(session *b)
+{
+    for (int j = 0; j < 3 && b->earth != SESSION_NO_EARTH; j++) {
+        if (b->earth == SESSION_TABLE)
+            b->record.reference_force[j] = NULL;
+        else
+            b->record.reference_rate[j] = NULL;
+    }
+    if (b->earth != SESSION_TABLE)
+        return;
+    b->record.reference_on_ground = true;
+    b->record.axis_count[IMK_ACCEL] = 0;
+    const double larger = b->settings.g_sensitivity_sigma / 1e-5;
+    for (int i = 0; i < 9; i++)
+        b->truth.gyro.g_sensitivity.value[i / 3][i % 3] *= larger;
+}
+
 /* The log of unit `seed`; `bad` of its holds are disturbed. */
 static inline void session_log(session *b, uint64_t seed, double bad)
 {
@@ -378,9 +478,12 @@ static inline void session_log(session *b, uint64_t seed, double bad)
         gyro[axis] = b->unequal * gyro[axis - 1];
         accel[axis] = b->unequal * accel[axis - 1];
     }
+    session_tell(b);
+    session_turn(b, seed, 1.0);
     session_misplace(b, seed, 1.0);
     session_run(b, &b->truth, seed, (uint32_t)seed, true, b->log);
     session_misplace(b, seed, -1.0);
+    session_turn(b, seed, -1.0);
     session_true_bias(b, seed, (uint32_t)seed);
     /* An encoder of 2e-7 rad: its rates are differences of rounded angles. */
     for (int j = 0; j < 3; j++) {
@@ -418,6 +521,8 @@ static inline imk_status session_solve(session *b, imk_error *error)
         b->calibration.model.gyro.noise = b->truth.gyro.noise;
         b->calibration.model.accel.noise = b->truth.accel.noise;
     }
+    if (b->earth == SESSION_ONE_HEADING || b->earth == SESSION_HEADINGS)
+        b->calibration.latitude = session_latitude;
     imk_status status =
         imk_procedure_observe(b->procedure, &b->calibration, &b->record, &b->settings, false,
                               &b->findings, b->workspace, b->workspace_size, error);

@@ -33,6 +33,7 @@ typedef struct session_plan {
     double stated;     /* placement that the calibration is told, over the true one; 0: 1 */
     double unequal;    /* white noise of each axis over that of the axis before it; 0: 1 */
     double push;       /* equal pose errors: a force on every axis of each hold [m/s^2] */
+    bool unlabelled; /* sections are not named; the unit rests again after each turn, where it is */
 } session_plan;
 
 typedef struct session {
@@ -152,11 +153,13 @@ static inline void session_plan_motion(session *b, const session_plan *plan)
             push[i] += plan->push * z[4 + i];
         session_add(b, hold, face, a, sense, 0.0, tilt, heading, push);
         if (turn > 0 && sense > 0) {
-            for (int i = 0; i < 3; i++)
+            const double angle = BENCH_TURN + plan->placement * z[a];
+            for (int i = 0; i < 3 && !plan->unlabelled; i++)
                 tilt[i] = i == a ? 0.0 : plan->placement * z[i];
             session_add(b, BENCH_MOVE, -1, a, sense, 0.0, tilt, heading, none);
-            session_add(b, turn, 6 + a, a, sense, BENCH_TURN + plan->placement * z[a], tilt,
-                        heading, none);
+            session_add(b, turn, 6 + a, a, sense, angle, tilt, heading, none);
+            if (plan->unlabelled)
+                session_add(b, hold, face, a, sense, 0.0, tilt, heading - angle, push);
             z += 8;
         }
         session_add(b, BENCH_MOVE, -1, a, sense, 0.0, none, heading, none);
@@ -248,7 +251,7 @@ static inline bool session_run(session *b, const session_plan *plan, imk_procedu
                                   .dt = 1.0 / BENCH_RATE,
                                   .axis_count = {3, 3},
                                   .counts = {true, true},
-                                  .section = b->section,
+                                  .section = plan->unlabelled ? NULL : b->section,
                                   .section_count = 9,
                                   .section_name = session_labels};
     for (int i = 0; i < 6; i++)

@@ -401,6 +401,10 @@ static void reference_columns_are_read(void **state)
     const imk_model found = read_model("found.yaml");
     CHECK_CLOSE(found.gyro.scale_factor.fixed.value[2], 3000e-6, 300e-6);
     assert_false(found.accel.present);
+    assert_int_equal(run("$I calibrate table.csv -p rate-table --table-axis z --without "
+                         "nonlinearity | grep -q \"g-sensitivity and the Earth's rotation in the "
+                         "bias of the gyros (37 deg/h\""),
+                     0);
     check_says("$I calibrate table.csv -p rate-table", 2,
                "table.csv has a column table_rate; state the axis of the unit about which the "
                "table turns it, such as --table-axis z");

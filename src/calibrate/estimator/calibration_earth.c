@@ -104,7 +104,7 @@ void imki_earth_spread(imki_estimator *e)
 {
     for (size_t i = 0; i < e->observations; i++)
         for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
-            e->known_variance[i][axis] = 0.0;
+            e->known_variance[i][axis] = e->problem->observation[i].heading_variance[axis];
             if (e->problem->observation[i].knowledge != IMK_INPUT_GRAVITY || e->earth[i] ||
                 isnan(e->reading[i][IMK_GYRO][axis]))
                 continue;

@@ -10,14 +10,25 @@
 #include <math.h>
 #include <string.h>
 
-/* What is known before: parameters, fixtures, the Earth's rate; sums into the normal
+/* Of a global that is an offset of a record; 0: it is none. */
+static double offset_sigma(const imki_estimator *e, size_t global)
+{
+    for (size_t r = 0; r < e->problem->record_count; r++) {
+        const int first = e->offset_global[r], axes = e->problem->record[r]->axis_count[IMK_GYRO];
+        if (first >= 0 && (int)global >= first && (int)global < first + axes)
+            return e->offset_sigma[r];
+    }
+    return 0.0;
+}
+
+/* What is known before: parameters, fixtures, offsets, the Earth's rate; sums into the normal
  * equations when `build`. */
 static double prior_cost(imki_estimator *e, const imki_point *point, bool build)
 {
     const imk_calibration *problem = e->problem;
     double cost = 0.0;
     for (size_t g = 0; g < e->globals; g++) {
-        double sigma = 0.0, from = 0.0;
+        double sigma = offset_sigma(e, g), from = 0.0;
         if (g < e->parameters) {
             sigma = problem->prior_sigma[g] *
                     (problem->prior_guessed[g] ? e->factor[IMKI_PART_TERMS] : 1.0);

@@ -198,8 +198,9 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
                             imki_row *rows)
 {
     const imk_calibration *problem = e->problem;
+    const imk_observation *observation = &problem->observation[index];
     const int first = e->local_first[index];
-    const bool moving = problem->observation[index].moving;
+    const bool moving = observation->moving;
     exposure x;
     int count = 0;
     expose(e, point, index, &x);
@@ -218,12 +219,20 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
             row->axis = axis;
             row->sigma = e->sigma[index][sensor][axis];
             row->known_variance = sensor == IMK_GYRO ? e->known_variance[index][axis] : 0.0;
+            row->at_most = sensor == IMK_GYRO && observation->heading_depends
+                               ? observation->heading_variance[axis]
+                               : 0.0;
             if (e->added[sensor] > 0.0 && !moving) {
                 row->known_variance += row->sigma * row->sigma;
                 row->sigma = e->added[sensor];
             }
             row->locals = row->globals = 0;
-            predict(e, &problem->observation[index], &x, &y, reading, row);
+            predict(e, observation, &x, &y, reading, row);
+            if (sensor == IMK_GYRO && observation->offset_sigma > 0.0) {
+                const int offset = e->offset_global[observation->record] + axis;
+                row->residual -= point->global[offset];
+                add_global(row, offset, 1.0);
+            }
             if (!x.gravity) {
                 by_rotations(&x, &y, first, row);
                 continue;

@@ -54,6 +54,28 @@ static size_t band_width(const imk_calibration *c, size_t rest)
     return widest;
 }
 
+/* Does an observation have an offset in common with others of its record? */
+static bool has_offset(const imk_calibration *c, const imk_observation *o)
+{
+    return o->offset_sigma > 0.0 && o->record >= 0 && o->record < (int)c->record_count &&
+           o->record < IMK_TEST_RECORDS_MAX && c->record[o->record];
+}
+
+/* Gyros of the records with offsets, together. */
+static size_t count_offsets(const imk_calibration *c)
+{
+    bool seen[IMK_TEST_RECORDS_MAX] = {false};
+    size_t gyros = 0;
+    for (size_t i = 0; i < c->observation_count; i++) {
+        const imk_observation *o = &c->observation[i];
+        if (!has_offset(c, o) || seen[o->record])
+            continue;
+        seen[o->record] = true;
+        gyros += (size_t)c->record[o->record]->axis_count[IMK_GYRO];
+    }
+    return gyros;
+}
+
 static void lay_out(imki_estimator *e, const imk_calibration *c, imki_parts *a)
 {
     const size_t n = c->observation_count, m = c->turn_count;
@@ -61,7 +83,8 @@ static void lay_out(imki_estimator *e, const imk_calibration *c, imki_parts *a)
     size_t locals = 0;
     for (size_t i = 0; i < n; i++)
         locals += local_count(&c->observation[i], rest);
-    const size_t globals = c->parameter_count + 3 * c->fixture_count + 1; /* at most */
+    const size_t globals =
+        c->parameter_count + 3 * c->fixture_count + count_offsets(c) + 1; /* at most */
     const size_t band = locals * (band_width(c, rest) + 1);
     const size_t number = sizeof(double);
     e->problem = imki_take(a, sizeof *e->problem);
@@ -173,6 +196,14 @@ static imk_status check_observation(const imk_calibration *c, size_t index, imk_
     if (o->fixture >= (int)c->fixture_count)
         return refuse(error, IMK_ERROR_ARGUMENT, "observation", index, NULL,
                       "a fixture that was added, or -1");
+    bool spread = o->offset_sigma >= 0.0 && o->offset_sigma < HUGE_VAL &&
+                  (o->offset_sigma == 0.0 || o->record >= 0);
+    for (int axis = 0; axis < IMK_AXES_MAX; axis++)
+        spread = spread && o->heading_variance[axis] >= 0.0 && o->heading_variance[axis] < HUGE_VAL;
+    if (!spread)
+        return refuse(
+            error, IMK_ERROR_RANGE, "observation", index, NULL,
+            "a heading_variance and an offset_sigma of 0 or more, the latter in a record");
     if (!finite3(o->force) || !finite3(o->rate) || !finite3(o->angular_acceleration) ||
         isinf(o->temperature) ||
         (!isnan(o->temperature) && !(fabs(o->temperature_rate) < HUGE_VAL)) ||
@@ -202,7 +233,10 @@ static imk_status check_numbers(const imk_calibration *c, imk_error *error)
     for (size_t r = 0; r < c->record_count; r++)
         if (!c->record[r])
             return refuse(error, IMK_ERROR_ARGUMENT, "record", r, NULL, "a record");
-    return IMK_OK;
+    return count_offsets(c) <= IMK_OFFSETS_MAX
+               ? IMK_OK
+               : imk_error_set(error, IMK_ERROR_RANGE, "offset_sigma", NULL,
+                               "at most 24 gyros in records of an attitude that is not known");
 }
 
 /* After the observations: they say which record. */
@@ -429,6 +463,24 @@ static imk_status check(const imk_calibration *c, size_t workspace_size, imk_err
     return status;
 }
 
+static void start_offsets(imki_estimator *e)
+{
+    for (size_t r = 0; r < IMK_TEST_RECORDS_MAX; r++) {
+        e->offset_global[r] = -1;
+        e->offset_sigma[r] = 0.0;
+    }
+    for (size_t i = 0; i < e->observations; i++) {
+        const imk_observation *o = &e->problem->observation[i];
+        if (!has_offset(e->problem, o))
+            continue;
+        e->offset_sigma[o->record] = fmax(e->offset_sigma[o->record], o->offset_sigma);
+        if (e->offset_global[o->record] >= 0)
+            continue;
+        e->offset_global[o->record] = (int)e->globals;
+        e->globals += (size_t)e->problem->record[o->record]->axis_count[IMK_GYRO];
+    }
+}
+
 imk_status imki_estimator_start(imki_estimator *e, const imk_calibration *calibration,
                                 bool readings_matter, void *workspace, size_t workspace_size,
                                 imk_error *error)
@@ -455,6 +507,7 @@ imk_status imki_estimator_start(imki_estimator *e, const imk_calibration *calibr
         e->fixture_global[f] = e->problem->fixture_sigma[f] > 0.0 ? (int)e->globals : -1;
         e->globals += e->problem->fixture_sigma[f] > 0.0 ? 3 : 0;
     }
+    start_offsets(e);
     const size_t rest = imki_earth_start(e) ? 4 : 2;
     e->normal.globals = e->globals;
     e->normal.width = band_width(calibration, rest);

@@ -61,6 +61,7 @@ typedef struct sums {
     double total[IMKI_GLOBALS_MAX];         /* of influence */
     double diagonal[2]; /* sum of C_ii over the variance of the row, what locals took left out; of
                            holds, and where the input moves */
+    double shared[2];   /* the same, each row by the share that the factor multiplies */
     double last;        /* end of the stretch before */
 } sums;
 
@@ -340,8 +341,10 @@ static void sum_pairs(imki_estimator *e, const run *r, const process *p, sums *s
             s->common[c] += with_mean * influence[c];
             s->total[c] += influence[c];
         }
-        s->diagonal[e->problem->observation[item].moving] +=
+        const double square =
             (own - 2.0 * with_mean + p->level) * (1.0 - local) / imki_row_variance(e, row);
+        s->diagonal[e->problem->observation[item].moving] += square;
+        s->shared[e->problem->observation[item].moving] += row->share * square;
     }
     add_products(g, s->common, s->total, -1.0, matrix);
     add_products(g, s->total, s->common, -1.0, matrix);
@@ -446,18 +449,16 @@ void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit)
                 const double all_rows = s->diagonal[0] + s->diagonal[1];
                 const double taken = trace_with_information(&e->normal, e->slow.axis);
                 const double left = all_rows > 0.0 ? 1.0 - taken / all_rows : 0.0;
-                expected[imki_part_of(e, sensor, axis)] += left * s->diagonal[0];
-                expected[imki_moving_part(sensor, axis)] += left * s->diagonal[1];
+                expected[imki_part_of(e, sensor, axis)] += left * s->shared[0];
+                expected[imki_moving_part(sensor, axis)] += left * s->shared[1];
                 for (size_t i = 0; i < g * g; i++)
                     e->slow.covariance[i] += e->slow.axis[i];
                 add_level(e, &r, &p, all, s);
             }
         }
-        for (int part = 0; part < IMKI_PARTS; part++) {
-            const double left = fit->redundancy[part];
-            if (expected[part] > 0.0 && left > 0.0)
-                fit->slow_square[part] = expected[part] * fit->shared_redundancy[part] / left;
-        }
+        for (int part = 0; part < IMKI_PARTS; part++)
+            if (expected[part] > 0.0 && fit->redundancy[part] > 0.0)
+                fit->slow_square[part] = expected[part];
     }
 }
 

@@ -259,6 +259,9 @@ static void fill_groups(const imki_estimator *e, const imki_fit *fit,
         result->degrees_of_freedom += group->degrees_of_freedom;
     }
     fill_assumed(e, fit, IMKI_PART_PLACEMENT, &result->placement);
+    result->turn_chi_square =
+        fit->turn_square * result->placement.factor * result->placement.factor;
+    result->turn_freedom = fit->turn_redundancy;
     fill_assumed(e, fit, IMKI_PART_TERMS, &result->assumed);
 }
 

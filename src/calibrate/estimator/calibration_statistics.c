@@ -16,7 +16,9 @@
  *     r = sum of phi^2 (1 - M_ii),  its degrees of freedom,
  *
  * residuals over their sigma, iterated because the factors weigh the rows [FORSTNER1979]. With all
- * phi = 1 that is the sum of squares over the redundancy. */
+ * phi = 1 that is the sum of squares over the redundancy. Where what is known besides is a bound,
+ * as of the Earth's rate at headings that may be alike in all holds, the parameters may take all of
+ * it up: nothing of it is expected in the residuals then, and the factor is that of the rest. */
 #include "estimator_internal.h"
 
 #include "imukit/linear_algebra.h"
@@ -101,15 +103,15 @@ static void add_to_fit(imki_estimator *e, int count, imki_fit *fit)
         const int part = e->row[i].part;
         const double square = e->row[i].residual * e->row[i].residual;
         const double left = 1.0 - matrix[i * count + i], share = e->row[i].share;
+        const double variance = imki_row_variance(e, &e->row[i]), at_most = e->row[i].at_most;
         fit->count[part]++;
         fit->square[part] += square;
         fit->redundancy[part] += left;
         fit->shared_square[part] += share * square;
-        fit->shared_redundancy[part] += share * left;
+        fit->shared_redundancy[part] += share * left * (1.0 - at_most / variance);
         fit->freedom[part] += share * share * left;
-        const double variance = imki_row_variance(e, &e->row[i]);
         fit->stated[part] += left * imki_stated_variance(e, &e->row[i]) / variance;
-        fit->excess[part] += variance * square - e->row[i].known_variance * left;
+        fit->excess[part] += variance * square - (e->row[i].known_variance - at_most) * left;
         fit->scaled[part] += e->row[i].sigma * e->row[i].sigma * left;
     }
 }
@@ -162,8 +164,16 @@ imki_group_sum imki_sum_group(const imki_estimator *e, const imki_fit *fit, int 
 void imki_fit_groups(imki_estimator *e, imki_fit *fit)
 {
     memset(fit, 0, sizeof *fit);
-    for (size_t k = 0; k < imki_things(e); k++)
+    for (size_t k = 0; k < imki_things(e); k++) {
+        const double square = fit->square[IMKI_PART_PLACEMENT],
+                     redundancy = fit->redundancy[IMKI_PART_PLACEMENT];
+        const bool placed = k >= e->items && k < e->items + e->observations;
         add_to_fit(e, imki_rows_of(e, k), fit);
+        if (placed && e->problem->observation[k - e->items].turn_time > 0.0) {
+            fit->turn_square += fit->square[IMKI_PART_PLACEMENT] - square;
+            fit->turn_redundancy += fit->redundancy[IMKI_PART_PLACEMENT] - redundancy;
+        }
+    }
     imki_slow_noise_fit(e, fit);
 }
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The estimator's working state. Unknowns are of two kinds:
  *
- *   globals  parameters, then three angles of each fixture whose mounting is not exact, then the
- *            vertical part of the Earth's rate when the latitude is not known
+ *   globals  parameters, then three angles of each fixture whose mounting is not exact, then what
+ *            the gyros of a record are off by together, then the vertical part of the Earth's rate
+ *            when the latitude is not known
  *   locals   two angles of each direction of gravity, three of each placement; where turns join
  *            rests and it matters, two components of the Earth's horizontal rate at a rest
  *            (calibration_earth.c); turns tie the locals of two observations, so that their normal
@@ -16,7 +17,7 @@
 #include "calibration_internal.h"
 
 enum {
-    IMKI_GLOBALS_MAX = IMK_CORRELATED_MAX + 3 * IMK_FIXTURES_MAX + 1,
+    IMKI_GLOBALS_MAX = IMK_CORRELATED_MAX + 3 * IMK_FIXTURES_MAX + IMK_OFFSETS_MAX + 1,
     IMKI_ROWS_MAX = 2 * IMK_AXES_MAX,
     IMKI_LOCALS_OF_ROW = 6
 };
@@ -42,6 +43,7 @@ typedef struct imki_row {
     int sensor, axis;       /* of a reading; axis is the component of a turn */
     double residual, sigma; /* [unit], sigma as stated */
     double known_variance;  /* besides, which no factor multiplies: the Earth's horizontal rate */
+    double at_most;         /* of that: a bound, which residuals need not show */
     double share;           /* of the variance that the factor multiplies */
     int locals;
     size_t local[IMKI_LOCALS_OF_ROW];
@@ -97,8 +99,10 @@ typedef struct imki_estimator {
     double *place[IMK_CORRELATED_MAX]; /* in the model */
     int axis_parameters[2][IMK_AXES_MAX];
     uint8_t axis_parameter[2][IMK_AXES_MAX][IMK_CORRELATED_MAX];
-    int fixture_global[IMK_FIXTURES_MAX]; /* first of its angles; -1: exact */
-    int vertical_global;                  /* -1: the latitude is known, or nothing depends on it */
+    int fixture_global[IMK_FIXTURES_MAX];    /* first of its angles; -1: exact */
+    int offset_global[IMK_TEST_RECORDS_MAX]; /* first of its gyros; -1: none */
+    double offset_sigma[IMK_TEST_RECORDS_MAX];
+    int vertical_global; /* -1: the latitude is known, or nothing depends on it */
     double vertical_rate, vertical_sigma, horizontal_variance; /* of the Earth at rest */
     int *local_first;                                          /* per observation; -1: none */
     bool *earth; /* per observation: its third and fourth local are the Earth's horizontal rate */
@@ -210,13 +214,15 @@ typedef struct imki_fit {
     double square[IMKI_PARTS];     /* of residuals over their sigma */
     double redundancy[IMKI_PARTS]; /* what the fit left of their number */
     double shared_square[IMKI_PARTS], shared_redundancy[IMKI_PARTS]; /* each row by the share of its
-                                      variance that the factor multiplies */
+                                      variance that the factor multiplies, and of the redundancy
+                                      without what residuals need not show */
     double
         stated[IMKI_PARTS]; /* redundancy, each row by the share of its variance that is stated */
     double freedom[IMKI_PARTS]; /* degrees of freedom of the factor: by the square of the share */
     double excess[IMKI_PARTS], scaled[IMKI_PARTS]; /* for a first factor^2: sums of residual^2 less
                                       what is known of it, and of sigma^2 (1 - M_ii) */
     bool estimated[IMKI_PARTS];                    /* the factor; else it is 1 */
+    double turn_square, turn_redundancy;           /* of placements: those of turns */
     double slow_square[IMKI_PARTS]; /* what slow noise is expected to add to shared_square */
 } imki_fit;
 /* Squared distances of an item's rows, by group, from what the others predict, over their variance:

@@ -123,6 +123,21 @@ static void look_at_correlations(const imk_calibration_result *result, list *l)
         add(l, IMK_DIAGNOSTIC_CORRELATED, result->parameter[p].sensor, p, q, r, strong_correlation);
 }
 
+double imk_calibration_placement_probability(const imk_calibration_result *result)
+{
+    const imk_group_fit *all = &result->placement;
+    const double freedom[2] = {all->degrees_of_freedom - result->turn_freedom,
+                               result->turn_freedom};
+    const double square[2] = {all->chi_square - result->turn_chi_square, result->turn_chi_square};
+    double least = (double)NAN, tests = 0.0;
+    for (int of = 0; of < 2; of++)
+        if (freedom[of] >= 1.0) {
+            least = fmin(least, imk_gamma_upper(0.5 * freedom[of], 0.5 * fmax(0.0, square[of])));
+            tests += 1.0;
+        }
+    return tests > 0.0 ? fmin(1.0, tests * least) : least;
+}
+
 size_t imk_solution_diagnostics(const imk_calibration *calibration,
                                 const imk_calibration_result *result, size_t capacity,
                                 imk_diagnostic_finding *diagnostic)

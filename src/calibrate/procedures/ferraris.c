@@ -215,11 +215,10 @@ static void observe_turn(const imki_procedure_call *call, const imki_session_str
     }
     for (int i = 0; i < 3; i++) {
         const double counts = fabs(imki_counts_per_unit(&c->model, record, IMK_GYRO, i));
-        const double noise = noise_density(record, list, i) / sqrt(means.duration);
-        const double earth = counts * earth_sigma[i];
-        const double sigma = sqrt(noise * noise + earth * earth);
+        const double sigma = noise_density(record, list, i) / sqrt(means.duration);
         observation.reading[IMK_GYRO][i] = means.reading[IMK_GYRO][i];
         observation.sigma[IMK_GYRO][i] = sigma > 0.0 ? sigma : 1e-9 * counts;
+        observation.heading_variance[i] = earth_sigma[i] * earth_sigma[i];
     }
     (void)imk_calibration_observe(c, &observation);
 }

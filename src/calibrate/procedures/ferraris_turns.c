@@ -136,6 +136,39 @@ static void detect_turns(const imk_test_record *record, const imk_procedure_sett
     }
 }
 
+/* The hold before another, in time; NULL: there is none. */
+static imki_session_stretch *hold_before(const imki_session_stretches *list, size_t begin)
+{
+    imki_session_stretch *last = NULL;
+    for (size_t k = 0; k < list->count; k++) {
+        imki_session_stretch *hold = &list->stretch[k];
+        if (!hold->at.turn && hold->at.end <= begin && (!last || hold->at.end > last->at.end))
+            last = hold;
+    }
+    return last;
+}
+
+/* A unit that is turned on the plate is not placed anew: holds on one face with a turn between them
+ * are one placement. What is trimmed off the holds of sections lies between them and the turn. */
+static void find_again(const imk_test_record *record, const imk_procedure_settings *settings,
+                       imki_session_stretches *list)
+{
+    const double trimmed = list->detected ? 0.0 : settings->trim + settings->settle;
+    const size_t apart = trimmed > 0.0 ? imk_samples_in(trimmed, record->dt) : 0;
+    for (size_t k = 0; k < list->count; k++) {
+        imki_session_stretch *hold = &list->stretch[k];
+        const imki_session_stretch *before =
+            hold->at.turn ? NULL : hold_before(list, hold->at.begin);
+        for (size_t t = 0; before && t < list->count; t++) {
+            const imk_ferraris_stretch *turn = &list->stretch[t].at;
+            if (turn->turn && same_face(&before->at, &hold->at) && turn->begin >= before->at.end &&
+                turn->begin <= before->at.end + apart && turn->end <= hold->at.begin &&
+                turn->end + apart >= hold->at.begin)
+                hold->again = true;
+        }
+    }
+}
+
 static imk_status turns_missing(int axes, const bool seen[3], imk_error *error)
 {
     char missing[160] = "add a full turn about ";
@@ -178,6 +211,7 @@ imk_status imki_turns_find(const imk_test_record *record, const imk_procedure_se
         list->stretch[kept++] = stretch;
     }
     list->count = kept;
+    find_again(record, settings, list);
     const int axes = seen[0] + seen[1] + seen[2];
     return axes == 3 ? IMK_OK : turns_missing(axes, seen, error);
 }

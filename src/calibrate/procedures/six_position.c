@@ -7,7 +7,7 @@
  *     w = W sin(latitude) up + W cos(latitude) north
  *
  * of which the heading of the unit, and so its direction to the north, is not known: that part adds
- * W cos(latitude)/sqrt(2) to the sigma of both gyros across the vertical. */
+ * (W cos(latitude))^2/2 to the variance of both gyros across the vertical. */
 #include "six_position_internal.h"
 
 #include "base/refuse_internal.h"
@@ -83,11 +83,8 @@ static void set_readings(const imki_procedure_call *call, const imk_static_inter
                 sigma = smallest_sigma(model, record, s, i);
             if (s == IMK_GYRO)
                 sigma = add_rounding(sigma, hold, holds, i);
-            if (s == IMK_GYRO && i < 3) {
-                const double earth =
-                    earth_sigma[i] * fabs(imki_counts_per_unit(model, record, s, i));
-                sigma = sqrt(sigma * sigma + earth * earth);
-            }
+            if (s == IMK_GYRO && i < 3)
+                observation->heading_variance[i] = earth_sigma[i] * earth_sigma[i];
             observation->reading[s][i] = hold->mean[s][i];
             observation->sigma[s][i] = sigma;
         }
@@ -111,6 +108,39 @@ static bool is_coarse(const imk_test_record *record, const imki_session_stretche
         coarse = coarse || (double)holds * rounding > all - rounding;
     }
     return coarse;
+}
+
+/* Mean of two holds, by their samples. */
+static void pool(imk_static_interval *to, const imk_static_interval *more, double *samples)
+{
+    const double own = *samples, other = (double)(more->end - more->begin), all = own + other;
+    for (int s = 0; s < 2; s++)
+        for (int i = 0; i < IMK_AXES_MAX; i++) {
+            const double a = own * to->sigma[s][i] / all, b = other * more->sigma[s][i] / all;
+            to->mean[s][i] = (own * to->mean[s][i] + other * more->mean[s][i]) / all;
+            to->sigma[s][i] = sqrt(a * a + b * b);
+            to->rounding[s][i] = fmax(to->rounding[s][i], more->rounding[s][i]);
+        }
+    to->temperature = (own * to->temperature + other * more->temperature) / all;
+    to->temperature_rate = (own * to->temperature_rate + other * more->temperature_rate) / all;
+    *samples = all;
+}
+
+/* What a placement reads: in its hold, and in those that turns led to from there. Holds are in
+ * order of time. */
+static imk_static_interval of_placement(const imki_session_stretches *list, size_t hold)
+{
+    imk_static_interval summary = list->stretch[hold].summary;
+    double samples = (double)(summary.end - summary.begin);
+    for (size_t k = hold + 1; k < list->count; k++) {
+        const imki_session_stretch *next = &list->stretch[k];
+        if (next->at.turn)
+            continue;
+        if (!next->again)
+            break;
+        pool(&summary, &next->summary, &samples);
+    }
+    return summary;
 }
 
 /* Smallest eigenvalue of the mean outer product of the directions of holds: of axes, the smallest
@@ -146,21 +176,20 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_sessio
     c->frame = IMK_FRAME_REFERENCE;
     size_t holds = 0;
     for (size_t k = 0; k < list->count; k++)
-        holds += !list->stretch[k].at.turn;
+        holds += !list->stretch[k].at.turn && !list->stretch[k].again;
     c->gyro_coarse = c->gyro_coarse || is_coarse(c->record[call->record], list, holds);
     for (size_t k = 0; k < list->count; k++) {
         const imki_session_stretch *stretch = &list->stretch[k];
-        if (stretch->at.turn)
+        if (stretch->at.turn || stretch->again)
             continue;
+        const imk_static_interval summary = of_placement(list, k);
         imk_observation observation = {
             .knowledge = settings->placement_sigma > 0.0 ? IMK_INPUT_PLACED : IMK_INPUT_KNOWN,
             .record = call->record,
             .begin = stretch->at.begin,
             .end = stretch->at.end,
-            .temperature = stretch->summary.temperature,
-            .temperature_rate = isfinite(stretch->summary.temperature_rate)
-                                    ? stretch->summary.temperature_rate
-                                    : 0.0,
+            .temperature = summary.temperature,
+            .temperature_rate = isfinite(summary.temperature_rate) ? summary.temperature_rate : 0.0,
             .placement_sigma = settings->placement_sigma,
             .fixture = *fixture,
             .correlated = c->record[call->record]->means};
@@ -168,7 +197,7 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_sessio
         up[stretch->at.axis] = stretch->at.sense;
         observation.force[stretch->at.axis] = stretch->at.sense * c->gravity;
         imki_earth_at_rest(c, up, observation.rate, earth_sigma);
-        set_readings(call, &stretch->summary, holds, earth_sigma, &observation);
+        set_readings(call, &summary, holds, earth_sigma, &observation);
         (void)imk_calibration_observe(c, &observation);
     }
     call->findings->intervals += list->found;

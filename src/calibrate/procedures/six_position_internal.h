@@ -28,6 +28,7 @@ imki_label imki_label_parse(const char *text);
 typedef struct imki_session_stretch {
     imk_ferraris_stretch at;
     const char *label; /* NULL: found by itself */
+    bool again;        /* a hold that a turn led to from the hold before: the same placement */
     imk_static_interval summary;
 } imki_session_stretch;
 
@@ -59,7 +60,7 @@ imk_status imki_faces_complete(const imki_session_stretches *list, imk_error *er
 
 /* ---- six_position.c: what both procedures add ---- */
 
-/* One observation a hold, and the nominal sensitivity of the accelerometers into the model. */
+/* One observation a placement, and the nominal sensitivity of the accelerometers into the model. */
 imk_status imki_holds_observe(const imki_procedure_call *call, const imki_session_stretches *list,
                               size_t more, int *fixture);
 /* Standard deviations of the Earth's rate in body axes that the attitude does not tell, along the
@@ -78,7 +79,8 @@ typedef struct imki_turn_means {
 imki_turn_means imki_turn_mean(const imk_test_record *record, size_t begin, size_t end);
 
 /* Find the axes of turns that sections did not name, and, in a list that was detected, the turns
- * themselves. @return IMK_ERROR_TOO_SHORT (field "turn"), IMK_ERROR_KEY_MISSING ("gyro") */
+ * themselves; and the holds that are no placements of their own. @return IMK_ERROR_TOO_SHORT (field
+ * "turn"), IMK_ERROR_KEY_MISSING ("gyro") */
 imk_status imki_turns_find(const imk_test_record *record, const imk_procedure_settings *settings,
                            const imk_model *model, imki_session_stretches *list, imk_error *error);
 

@@ -246,6 +246,7 @@ static size_t go_through(const imki_procedure_call *call, const plan *p, const d
         if (!sigma)
             continue;
         readings_of(p, begin, end, sigma, &o);
+        o.offset_sigma = imki_reference_offset_sigma(call, &o);
         imk_calibration_observe(call->calibration, &o);
     }
     return count;

@@ -86,7 +86,8 @@ static void add_observation(design *d, const imk_calibration *c, const imk_obser
         sigma /= fabs(triad->sensitivity.value[axis]);
     if (!(fabs(o->reading[sensor][axis]) < HUGE_VAL) || !(sigma > 0.0 && sigma < HUGE_VAL))
         return;
-    const double weight = 1.0 / (sigma * sigma);
+    const double known = sensor == IMK_GYRO ? o->heading_variance[axis] : 0.0;
+    const double weight = 1.0 / (sigma * sigma + known);
     imki_calibration_regressors(&c->model, d->columns, d->parameter, sensor, axis, o->rate,
                                 o->force, o->angular_acceleration, o->temperature,
                                 o->temperature_rate, row);

@@ -90,6 +90,9 @@ void imki_reference_sigmas(const imki_procedure_call *call, int sensor,
 void imki_reference_take(const imki_procedure_call *call, int sensor,
                          const imki_pooled_noise *noise, const imk_reference_stretch *stretch,
                          imk_observation *observation);
+/* What the gyros of a rate table are off by together, as far as its input is not known. */
+double imki_reference_offset_sigma(const imki_procedure_call *call,
+                                   const imk_observation *observation);
 /* Counts per unit of an axis; 1 where readings are in SI. */
 double imki_reference_sensitivity(const imki_procedure_call *call, int sensor, int axis);
 /* Rate and force that the sensors themselves read at means of their readings, by the nominal

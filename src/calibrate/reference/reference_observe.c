@@ -238,8 +238,9 @@ static imk_status check_following(const observed *o, int sensor)
  */
 
 /* Rate of a unit at rest under a known force: the part of the Earth's rate along the vertical. The
- * other part has no known direction; of m observations that share it, each gets m times its
- * variance, so that their mean is not stated better than it is. */
+ * other part h has no known direction. The headings of m holds may be alike, as on a dividing head,
+ * or not; since (sum of x_i)^2 <= m sum of x_i^2, the covariance of the h is m times their
+ * variances at most, however they depend on each other, and each reading gets m times its own. */
 static void earth_at_rest(const observed *o, imk_observation *observation)
 {
     const imk_calibration *c = o->calibration;
@@ -252,13 +253,12 @@ static void earth_at_rest(const observed *o, imk_observation *observation)
     const double level = known ? c->earth_rate * imk_cos(c->latitude) : c->earth_rate;
     for (int j = 0; j < 3; j++)
         observation->rate[j] = vertical * f[j] / size;
+    observation->heading_depends = true;
     for (int axis = 0; axis < o->record->axis_count[IMK_GYRO]; axis++) {
         const double *e = c->model.gyro.direction[axis];
         const double up = imki_dot3(e, f) / size;
-        const double across = known ? 0.5 * (1.0 - up * up) : 1.0 / 3.0;
-        const double spread = level * imki_reference_sensitivity(o->call, IMK_GYRO, axis);
-        double *sigma = &observation->sigma[IMK_GYRO][axis];
-        *sigma = sqrt(*sigma * *sigma + (double)o->count * across * spread * spread);
+        const double across = known ? 0.5 * fmax(0.0, 1.0 - up * up) : 1.0 / 3.0;
+        observation->heading_variance[axis] = (double)o->count * across * level * level;
     }
 }
 
@@ -310,6 +310,7 @@ static imk_status add_stretches(const observed *o)
             continue;
         }
         input_of(o, s, &made);
+        made.offset_sigma = imki_reference_offset_sigma(o->call, &made);
         if (o->call->procedure == IMK_PROCEDURE_TUMBLE &&
             o->call->settings->placement_sigma > 0.0) {
             made.knowledge = IMK_INPUT_PLACED;

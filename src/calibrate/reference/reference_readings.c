@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Readings of stretches as observations: means with their sigma, and what is not usable. */
+#include "base/algebra/vector_internal.h"
 #include "base/refuse_internal.h"
 #include "reference_internal.h"
 
@@ -49,6 +50,25 @@ double imki_reference_floor(const imki_procedure_call *call, int sensor, int axi
         return 0.1 * rounding;
     const double step = triad->resolution.value[axis];
     return step > 0.0 ? 0.1 * rounding * step : 1e-9;
+}
+
+/* Without forces the attitude of the unit is not known, and g-sensitivity times gravity looks like
+ * a bias; so does the Earth's rate, (Omega^2/3 along each axis, all directions alike), where the
+ * table tells its own rates only. */
+double imki_reference_offset_sigma(const imki_procedure_call *call,
+                                   const imk_observation *observation)
+{
+    const imk_calibration *c = call->calibration;
+    double variance = 0.0;
+    if (call->procedure != IMK_PROCEDURE_RATE_TABLE)
+        return 0.0;
+    if (!(imki_norm3(observation->force) > 0.0)) {
+        const double sigma = call->settings->g_sensitivity_sigma * c->gravity;
+        variance += sigma * sigma;
+    }
+    if (record_of(call)->reference_on_ground)
+        variance += c->earth_rate * c->earth_rate / 3.0;
+    return sqrt(variance);
 }
 
 imk_observation imki_reference_blank(const imki_procedure_call *call, size_t begin, size_t end,

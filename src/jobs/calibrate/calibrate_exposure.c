@@ -102,6 +102,7 @@ static imk_status take_table(const imk_calibrate_log_settings *s, imk_calibrate_
     if (s->table_axis < 0 || s->table_axis > 2)
         return imki_fail(&log->loaded, error, IMK_ERROR_ARGUMENT, "no_table_axis", NULL, 0, NULL);
     const double *zero = reference_column(log, 0);
+    log->record.reference_on_ground = true;
     for (int k = 0; k < 3; k++)
         log->record.reference_rate[k] = k == s->table_axis ? log->log.data[column] : zero;
     return zero ? IMK_OK : no_memory(error);

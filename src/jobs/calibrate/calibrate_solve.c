@@ -2,15 +2,11 @@
 /* The one estimate of all observations together; of tables that do not say how well their means are
  * known, with the scatter of the residuals as their sigma.
  *
- * The variance of such a reading is s^2, all alike, and perhaps what the procedure knows besides,
- * such as the Earth's rate at an unknown heading. With F the factor of the group (F^2 = chi-square
- * over its degrees of freedom) the next s is k s,
- *
- *     k^2 = 1 + (F^2 - 1) sum of variances/sum of s^2,
- *
- * until it is about 1. F is estimated, so that intervals are Student's. Where what is known besides
- * covers s, chance may leave nothing for s: of the scatter of all residuals, 2/sqrt(degrees of
- * freedom) is taken for noise at least, and all of it where the estimator finds no factor. */
+ * The variance of such a reading is s^2, all alike, and perhaps what no factor multiplies, the
+ * Earth's rate at an unknown heading. With F the factor of the group the next s is F s, until F is
+ * about 1. F is estimated, so that intervals are Student's. Where the Earth's rate covers s, chance
+ * may leave nothing for s: of the scatter of all residuals, 2/sqrt(degrees of freedom) is taken for
+ * noise at least. Where the estimator finds no factor, the scatter less the Earth's part is. */
 #include "calibrate_internal.h"
 
 #include "jobs/job_internal.h"
@@ -21,7 +17,7 @@
 /* F in the end. Sigmas that are all alike do not tell an added sigma from a factor, and the
  * estimator looks for an added one above 0.9 only. */
 static const double aimed_at = 0.85;
-/* k^2 is about 1. */
+/* F^2 is about 1. */
 static const double agreed = 0.03;
 /* Least s over the first one, which is 1e-4 of gravity: means without noise, made by a formula,
  * have none to be found. */
@@ -89,11 +85,10 @@ static imk_status check_scatter(imk_calibrate_log *b, int sensor, size_t first, 
                      IMKI_NUMBERS((double)fit->count, fit->degrees_of_freedom, least_freedom));
 }
 
-/* Sums over the readings of a sensor. */
+/* Over the readings of a sensor. */
 typedef struct scatter {
-    double variance; /* as used, in their unit */
-    double own;      /* s^2 */
-    double residual; /* (residual/s)^2 */
+    double residual;     /* sum of (residual/s)^2 */
+    double earth, count; /* sum of the Earth's variance/s^2 as far as residuals show it, readings */
 } scatter;
 
 static scatter sum_scatter(const imk_calibrate_log *b, int sensor)
@@ -110,26 +105,23 @@ static scatter sum_scatter(const imk_calibrate_log *b, int sensor)
                 continue;
             const double s = record->mean_sigma[sensor][axis][o->begin];
             const double residual = unit * o->residual[sensor][axis] / s;
-            sum.variance += o->sigma[sensor][axis] * o->sigma[sensor][axis];
-            sum.own += s * s;
             sum.residual += residual * residual;
+            sum.count += 1;
+            if (sensor == 0 && !o->heading_depends)
+                sum.earth += unit * unit * o->heading_variance[axis] / (s * s);
         }
     return sum;
 }
 
-/* Multiply s by k, given as its square. */
+/* Multiply s by a factor, given as its square. */
 static void scale_sigmas(imk_calibrate_log *b, int sensor, double square)
 {
     imk_calibration *c = b->calibration;
     for (size_t i = 0; i < c->observation_count; i++) {
         imk_observation *o = &c->observation[i];
         const imk_test_record *record = c->record[o->record];
-        for (int axis = 0; axis < record->axis_count[sensor] && record->means; axis++) {
-            const double s = record->mean_sigma[sensor][axis][o->begin];
-            o->sigma[sensor][axis] =
-                sqrt(fmax(o->sigma[sensor][axis] * o->sigma[sensor][axis] + (square - 1) * s * s,
-                          square * s * s));
-        }
+        for (int axis = 0; axis < record->axis_count[sensor] && record->means; axis++)
+            o->sigma[sensor][axis] *= sqrt(square);
     }
     for (imk_calibrate_record *log = b->record; log < b->record + b->count; log++) {
         size_t first = sensor == 0 ? 0 : (size_t)log->record.axis_count[0] * log->record.count;
@@ -153,14 +145,15 @@ static bool has_factor(const imk_calibration_result *r, int sensor)
 static bool take_scatter(imk_calibrate_log *b, int sensor, int round, double *now)
 {
     const imk_group_fit *fit = fit_of(b, sensor);
+    const double factor = fit->factor / aimed_at;
     const scatter sum = sum_scatter(b, sensor);
-    const double factor = fit->factor / aimed_at, whole = sum.residual / fit->degrees_of_freedom;
-    double square = whole;
+    const double whole = sum.residual / fit->degrees_of_freedom;
+    double square = whole - sum.earth / sum.count;
     if (has_factor(b->result, sensor))
-        square = fmax(1 + (factor * factor - 1) * sum.variance / sum.own,
-                      fmin(1, 2 / sqrt(fit->degrees_of_freedom)) * whole);
+        square = factor * factor;
     else if (round > 0)
         return false;
+    square = fmax(square, fmin(1, 2 / sqrt(fit->degrees_of_freedom)) * whole);
     square = fmax(square, least_square / *now);
     if (fabs(square - 1) < agreed)
         return false;

@@ -168,6 +168,79 @@ static void large_counts(void **state)
     session_free(b);
 }
 
+/* Rates about each axis in two records, whose gyros are off by an offset each. */
+static session *two_offsets(const imk_test_record *record, double offset_sigma)
+{
+    static const double off[2] = {2e-3, -3e-3}, force[3] = {0.0};
+    session *b = session_new(57, 1);
+    imk_calibration *c = &b->calibration;
+    for (int axis = 0; axis < 3; axis++)
+        CHECK_OK(imk_calibration_free(c, IMK_GYRO, IMK_MODEL_BIAS, axis, 0));
+    for (int axis = 0; axis < 3; axis++)
+        CHECK_OK(imk_calibration_free(c, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, axis, 0));
+    session_know_the_rest(b);
+    for (int k = 0; k < 24; k++) {
+        double rate[3] = {0.0};
+        rate[k / 2 % 3] = k % 4 < 2 ? 1.0 : -1.0;
+        imk_observation o = session_read(b, rate, force, NULL, (double)NAN);
+        o.record = k % 2;
+        o.offset_sigma = offset_sigma;
+        for (int axis = 0; axis < 3; axis++) {
+            o.reading[IMK_GYRO][axis] += off[k % 2];
+            o.reading[IMK_ACCEL][axis] = (double)NAN;
+        }
+        assert_true(imk_calibration_observe(c, &o) >= 0);
+    }
+    c->frame = IMK_FRAME_REFERENCE;
+    c->record_count = 2;
+    c->record[0] = c->record[1] = record;
+    return b;
+}
+
+/* The bias is between the records, as uncertain as their offsets, and scale factors are as certain
+ * as though there were none. */
+static void offsets_of_records(void **state)
+{
+    (void)state;
+    const imk_test_record record = {.count = 1, .dt = 0.01, .axis_count = {3, 0}};
+    const double sigma = 3e-3;
+    session *b = two_offsets(&record, sigma);
+    CHECK_OK(session_solve(b));
+    assert_int_equal(b->result.parameter_count, 6);
+    for (int axis = 0; axis < 3; axis++) {
+        const double bias = b->truth.gyro.bias.fixed.value[axis] - 0.5e-3;
+        CHECK_CLOSE(b->result.value[axis], bias, 6.0 * 3e-5 / sqrt(24.0));
+        CHECK_RELATIVE(b->result.sigma[axis], sigma * sqrt(0.5), 1e-3);
+        CHECK_CLOSE(b->result.value[3 + axis], b->truth.gyro.scale_factor.fixed.value[axis],
+                    6.0 * 3e-5 / sqrt(8.0));
+        CHECK_BELOW(b->result.sigma[3 + axis], 2.0 * 3e-5 / sqrt(8.0));
+    }
+    b->observation[3].offset_sigma = -1.0;
+    CHECK_STATUS(session_solve(b), IMK_ERROR_RANGE);
+    b->observation[3].offset_sigma = sigma;
+    b->observation[3].heading_variance[1] = (double)NAN;
+    CHECK_STATUS(session_solve(b), IMK_ERROR_RANGE);
+    assert_int_equal(b->error.index, 3);
+    session_free(b);
+}
+
+/* More records with offsets than there is room for. */
+static void too_many_offsets(void **state)
+{
+    (void)state;
+    const imk_test_record record = {.count = 1, .dt = 0.01, .axis_count = {3, 0}};
+    session *b = two_offsets(&record, 3e-3);
+    imk_calibration *c = &b->calibration;
+    c->record_count = IMK_OFFSETS_MAX / 3 + 1;
+    for (size_t k = 0; k < c->record_count; k++)
+        c->record[k] = &record;
+    for (size_t k = 0; k < c->observation_count; k++)
+        b->observation[k].record = (int)(k % c->record_count);
+    CHECK_STATUS(session_solve(b), IMK_ERROR_RANGE);
+    assert_string_equal(b->error.field, "offset_sigma");
+    session_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -176,6 +249,8 @@ int main(void)
         cmocka_unit_test(numbers_beyond_reason),
         cmocka_unit_test(one_observation_more_than_there_is_room),
         cmocka_unit_test(large_counts),
+        cmocka_unit_test(offsets_of_records),
+        cmocka_unit_test(too_many_offsets),
     };
     return cmocka_run_group_tests_name("estimator_inputs", tests, NULL, NULL);
 }

@@ -64,7 +64,7 @@ static void test_rounding(void **state)
 /* ---- holds and faces ---------------------------------------------------------------------------
  */
 
-static const session_plan twice = {2, 8, 0, 1.7e-3, 0, 0, 0, 0};
+static const session_plan twice = {2, 8, 0, 1.7e-3, 0, 0, 0, 0, false};
 
 static imk_status look(session *b, bool known, imk_procedure_findings *findings, imk_error *error)
 {
@@ -356,15 +356,102 @@ static void test_coverage_unequal_axes(void **state)
 static void test_coverage_exact(void **state)
 {
     (void)state;
-    static const session_plan plan = {2, 8, 0, 0, 0, 0, 0, 0};
+    static const session_plan plan = {2, 8, 0, 0, 0, 0, 0, 0, false};
     run_benches(&plan, IMK_PROCEDURE_SIXPOSITION, check_runs(60), 0, 1.8);
 }
 
 static void test_coverage_ferraris(void **state)
 {
     (void)state;
-    static const session_plan plan = {2, 8, 6, 1.7e-3, 0, 0, 0, 0};
+    static const session_plan plan = {2, 8, 6, 1.7e-3, 0, 0, 0, 0, false};
     run_benches(&plan, IMK_PROCEDURE_FERRARIS, check_runs(60), 0, 1.8);
+}
+
+/* Without labels, turned where it lies and left there for a while: nine observations, six of them
+ * placements. As if it had been placed anew after each turn, errors of misalignments were 1.25
+ * sigma; the limit is eight standard deviations of their mean square from 0.9. */
+static void test_turned_where_it_lies(void **state)
+{
+    (void)state;
+    static const session_plan plan = {
+        .rounds = 1, .hold = 5, .turn = 6, .placement = 1.7e-3, .unlabelled = true};
+    static coverage_count count;
+    const uint32_t benches = check_runs(120);
+    session *b = session_new();
+    memset(&count, 0, sizeof count);
+    imk_error error;
+    for (uint32_t n = 0; n < benches; n++) {
+        assert_true(session_run(b, &plan, IMK_PROCEDURE_FERRARIS, 1, n, &error));
+        assert_int_equal(b->calibration.observation_count, 9);
+        coverage_add(&count, &b->result, &b->truth, 0.95);
+    }
+    double square = 0.0, misalignments = 0.0;
+    for (size_t p = 0; p < count.parameter_count; p++)
+        if (count.parameter[p].sensor == IMK_ACCEL &&
+            count.parameter[p].term == IMK_MODEL_MISALIGNMENT) {
+            square += count.square[p];
+            misalignments += (double)count.benches;
+        }
+    CHECK_BELOW(square / misalignments, 0.9 + 8.0 * sqrt(2.0 / misalignments));
+    check_coverage(&count, 1.6);
+    session_free(b);
+}
+
+/* Both rests read the same placement: their mean is as good as both together. */
+static void test_pooled_holds(void **state)
+{
+    (void)state;
+    const session_plan plan = {
+        .rounds = 1, .hold = 5, .turn = 6, .placement = 1.7e-3, .unlabelled = true};
+    session *b = session_new();
+    imk_error error;
+    assert_true(session_run(b, &plan, IMK_PROCEDURE_FERRARIS, 1, 0, &error));
+    const imk_observation *up = &b->observation[0], *down = &b->observation[1];
+    assert_true(up->force[0] > 0.0 && down->force[0] < 0.0);
+    for (int s = 0; s < 2; s++)
+        for (int i = 0; i < 3; i++)
+            CHECK_RELATIVE(up->sigma[s][i] / down->sigma[s][i], sqrt(0.5), 0.25);
+    session_free(b);
+}
+
+/* The heading is not part of what a factor multiplies: the variance of the Earth's rate across the
+ * vertical is stated beside the noise. */
+static void test_heading(void **state)
+{
+    (void)state;
+    const session_plan plan = {.rounds = 1, .hold = 8};
+    const double level = BENCH_EARTH_RATE * cos(BENCH_LATITUDE);
+    session *b = session_new();
+    imk_error error;
+    double square[2] = {0.0}; /* of the noise: along the vertical, across */
+    assert_true(session_run(b, &plan, IMK_PROCEDURE_SIXPOSITION, 1, 0, &error));
+    for (size_t k = 0; k < 6; k++)
+        for (size_t i = 0; i < 3; i++) {
+            const imk_observation *o = &b->observation[k];
+            const bool across = i != k / 2;
+            CHECK_CLOSE(o->heading_variance[i], across ? 0.5 * level * level : 0.0, 1e-20);
+            square[across] += o->sigma[IMK_GYRO][i] * o->sigma[IMK_GYRO][i] / (across ? 12.0 : 6.0);
+        }
+    CHECK_RELATIVE(square[1], square[0], 0.3);
+    session_free(b);
+}
+
+/* A turn and the hold before it may be one placement, which is no reason for a doubt: of two groups
+ * the smaller probability counts twice. */
+static void test_probability_of_placements(void **state)
+{
+    (void)state;
+    static imk_calibration_result r;
+    r.placement.degrees_of_freedom = 40.0;
+    r.placement.chi_square = 70.0;
+    r.turn_freedom = 16.0;
+    r.turn_chi_square = 38.0;
+    CHECK_RELATIVE(imk_calibration_placement_probability(&r), 2.0 * imk_gamma_upper(8.0, 19.0),
+                   1e-12);
+    r.turn_freedom = r.turn_chi_square = 0.0;
+    CHECK_RELATIVE(imk_calibration_placement_probability(&r), imk_gamma_upper(20.0, 35.0), 1e-12);
+    r.placement.degrees_of_freedom = 0.5;
+    assert_true(isnan(imk_calibration_placement_probability(&r)));
 }
 
 /* Thirty holds of which three are bad: two lean by 0.05 rad, 29 sigma of their placement, and one
@@ -373,7 +460,7 @@ static void test_coverage_ferraris(void **state)
 static void test_bad_holds_refused(void **state)
 {
     (void)state;
-    static const session_plan plan = {5, 8, 0, 1.7e-3, 0.1, 0, 0, 0};
+    static const session_plan plan = {5, 8, 0, 1.7e-3, 0.1, 0, 0, 0, false};
     static coverage_count count;
     const uint32_t benches = check_quick() ? 4 : 16;
     session *b = session_new();
@@ -395,8 +482,8 @@ static void test_bad_holds_refused(void **state)
 static void test_needed_holds_kept(void **state)
 {
     (void)state;
-    static const session_plan clean = {1, 8, 0, 0, 0, 0, 0, 0},
-                              spoilt = {1, 8, 0, 0, 0.34, 0, 0, 0};
+    static const session_plan clean = {1, 8, 0, 0, 0, 0, 0, 0, false},
+                              spoilt = {1, 8, 0, 0, 0.34, 0, 0, 0, false};
     session *b = session_new();
     imk_error error;
     for (uint32_t n = 30; n < 36; n++) {
@@ -419,6 +506,10 @@ int main(void)
                                        cmocka_unit_test(test_placements_are_tested),
                                        cmocka_unit_test(test_coverage_unequal_axes),
                                        cmocka_unit_test(test_coverage_exact),
+                                       cmocka_unit_test(test_turned_where_it_lies),
+                                       cmocka_unit_test(test_pooled_holds),
+                                       cmocka_unit_test(test_heading),
+                                       cmocka_unit_test(test_probability_of_placements),
                                        cmocka_unit_test(test_coverage_ferraris),
                                        cmocka_unit_test(test_bad_holds_refused),
                                        cmocka_unit_test(test_needed_holds_kept)};

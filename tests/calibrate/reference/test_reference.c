@@ -351,6 +351,87 @@ static void test_upright_only(void **state)
     assert_true(shared->result.sigma[0] < 0.5 * sigma);
 }
 
+/* ---- the Earth ---- */
+
+/* How many intervals of the parameters of gyros with this term hold the truth; of g-sensitivity
+ * those of each axis along itself. */
+static double gyro_share(const coverage_count *count, int term)
+{
+    double held = 0.0, all = 0.0;
+    for (size_t p = 0; p < count->parameter_count; p++) {
+        const imk_model_parameter q = count->parameter[p];
+        const bool own = term != IMK_MODEL_G_SENSITIVITY || q.axis == q.element;
+        if (q.sensor != IMK_GYRO || q.term != term || !own)
+            continue;
+        held += (double)count->held[p];
+        all += (double)count->benches;
+    }
+    assert_true(all > 0.0);
+    return held / all;
+}
+
+static void run_on_earth(session_earth earth, imk_procedure procedure, void (*programme)(session *),
+                         double push, uint32_t benches, coverage_count *count)
+{
+    imk_error error;
+    start(procedure, programme);
+    shared->earth = earth;
+    shared->push[0] = push;
+    memset(count, 0, sizeof *count);
+    for (uint32_t i = 0; i < (check_quick() ? 2 : benches); i++) {
+        session_log(shared, 6000 + i, 0.0);
+        CHECK_OK(session_solve(shared, &error));
+        coverage_add(count, &shared->result, &shared->truth, 0.95);
+    }
+}
+
+/* A dividing head at one heading that is not known, holds that are off by 20 deg/h: the Earth's
+ * rate is stated beside the noise, so what the factor tells of the holds is not lost in it. When
+ * the factor multiplied both, biases and g-sensitivity along the axes held in 60 to 67 %. */
+static void test_unknown_heading(void **state)
+{
+    (void)state;
+    static coverage_count count;
+    const double level = session_earth_rate * cos(session_latitude);
+    run_on_earth(SESSION_ONE_HEADING, IMK_PROCEDURE_TUMBLE, session_tumble, 1e-4, 20, &count);
+    CHECK_BELOW(0.85, gyro_share(&count, IMK_MODEL_BIAS));
+    CHECK_BELOW(0.85, gyro_share(&count, IMK_MODEL_G_SENSITIVITY));
+    for (size_t k = 0; k < shared->calibration.observation_count; k++) {
+        const imk_observation *o = &shared->observation[k];
+        assert_true(o->heading_depends);
+        for (int i = 0; i < 3; i++) {
+            const double up = o->force[i] / session_gravity;
+            CHECK_CLOSE(o->heading_variance[i], 18.0 * level * level * (1.0 - up * up), 1e-12);
+            CHECK_BELOW(o->sigma[IMK_GYRO][i], level);
+        }
+    }
+    /* Holds 20 deg/h off, of which a reading along the force tells alone. */
+    CHECK_BELOW(2.0, shared->result.group[IMK_GROUP_GYRO].factor);
+}
+
+/* Gyros alone on a table that tells its rates: the bias contains g-sensitivity and the Earth's
+ * rate, as much as the sigma says; a sigma of 0 and no Earth leave the noise. */
+static void test_rate_of_table(void **state)
+{
+    (void)state;
+    static coverage_count count;
+    const double sensed = imk_procedure_default(IMK_PROCEDURE_RATE_TABLE).g_sensitivity_sigma;
+    run_on_earth(SESSION_TABLE, IMK_PROCEDURE_RATE_TABLE, session_rate_one, 0.0, 40, &count);
+    CHECK_BELOW(0.85, gyro_share(&count, IMK_MODEL_BIAS));
+    assert_int_equal(shared->result.parameter[0].term, IMK_MODEL_BIAS);
+    CHECK_RELATIVE(shared->result.sigma[0],
+                   sqrt(sensed * sensed * session_gravity * session_gravity +
+                        session_earth_rate * session_earth_rate / 3.0),
+                   0.01);
+    imk_error error;
+    shared->settings.g_sensitivity_sigma = 0.0;
+    CHECK_OK(session_solve(shared, &error));
+    CHECK_RELATIVE(shared->result.sigma[0], session_earth_rate / sqrt(3.0), 0.05);
+    shared->record.reference_on_ground = false;
+    CHECK_OK(session_solve(shared, &error));
+    CHECK_BELOW(shared->result.sigma[0], 0.2 * session_earth_rate);
+}
+
 static void test_spin(void **state)
 {
     (void)state;
@@ -728,6 +809,8 @@ int main(void)
         cmocka_unit_test(test_sine),
         cmocka_unit_test(test_tumble),
         cmocka_unit_test(test_centrifuge),
+        cmocka_unit_test(test_unknown_heading),
+        cmocka_unit_test(test_rate_of_table),
         cmocka_unit_test(test_spin),
         cmocka_unit_test(test_errors_of_holds),
         cmocka_unit_test(test_mounting),

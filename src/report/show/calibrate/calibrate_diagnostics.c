@@ -3,8 +3,6 @@
  * the warnings add up to. */
 #include "calibrate_message_internal.h"
 
-#include "imukit/distributions.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -466,7 +464,7 @@ static void add_placements(const imk_calibrate_log *b, imk_verdict *v)
                    IMK_FINDING_NOTE, "placement_untested",
                    "this log does not test the placements: their uncertainty is as --placement "
                    "states; put the unit on each face three times to test it"));
-    else if (imk_gamma_upper(0.5 * fit->degrees_of_freedom, 0.5 * fit->chi_square) < by_chance) {
+    else if (imk_calibration_placement_probability(b->result) < by_chance) {
         char advice[80] = "";
         if (fit->rms < imki_placement_most)
             snprintf(advice, sizeof advice, ", or state --placement %.2gdeg", fit->rms * degrees);

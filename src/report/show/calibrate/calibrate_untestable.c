@@ -86,6 +86,34 @@ static void add_of_faces(const imk_calibrate_log *b, imki_text *list)
         add_item(list, "K2 and K3 of the accelerometers (they go into bias and scale factor)");
 }
 
+/* Where no attitude is known, what acts on a gyro at rest is in its bias. */
+static void add_of_attitude(const imk_calibrate_log *b, imki_text *list)
+{
+    const double degrees_per_hour = 4.84813681109536e-6;
+    const imk_calibration *c = b->calibration;
+    double most = 0;
+    bool force = true, earth = false;
+    for (size_t i = 0; b->result && i < c->observation_count; i++) {
+        const imk_observation *o = &c->observation[i];
+        if (isnan(o->reading[0][0]))
+            continue;
+        if (!(o->offset_sigma > 0))
+            return;
+        most = fmax(most, o->offset_sigma);
+        force = force && (o->force[0] != 0 || o->force[1] != 0 || o->force[2] != 0);
+        earth = earth || c->record[o->record]->reference_on_ground;
+    }
+    if (most > 0)
+        imki_text_add(list,
+                      "%s%s in the bias of the gyros (%.2g deg/h, 1 sigma: its uncertainty "
+                      "includes it)",
+                      list->size > 0 ? "; " : "",
+                      force   ? "the Earth's rotation"
+                      : earth ? "g-sensitivity and the Earth's rotation"
+                              : "g-sensitivity",
+                      most / degrees_per_hour);
+}
+
 /* With references the rates and forces are known: a clock takes no part. */
 static void add_of_gyros(const imk_calibrate_log *b, imki_text *list)
 {
@@ -214,6 +242,7 @@ void imki_untestable(const imk_calibrate_log *b, imk_verdict *v)
 {
     imki_text list = {0};
     add_of_gyros(b, &list);
+    add_of_attitude(b, &list);
     add_of_gravity(b, &list);
     add_of_single_attitudes(b, &list);
     add_of_magnetometer(b, &list);
