@@ -118,7 +118,7 @@ static void store_tones(const imki_work *w, size_t count, const imki_sinusoid *t
 static size_t take_tones(imki_work *w, imki_line *lines, imk_identification *result)
 {
     enum { ROUNDS = 8 };
-    imki_sinusoid tones[IMKI_LINES_MAX];
+    imki_sinusoid tones[IMKI_LINES_MAX] = {{0, 0, 0}};
     size_t count = 0, lines_left = imki_lines_find(w->n, w->cumulative, 1, lines);
     for (int round = 0; round < ROUNDS; round++) {
         const size_t before = count;
