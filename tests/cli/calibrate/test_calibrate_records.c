@@ -80,6 +80,20 @@ static void references_are_compared(void **state)
     sweep();
 }
 
+/* Slow noise is named as long as no model states it. */
+static void unstated_noise_is_named(void **state)
+{
+    (void)state;
+    write_table();
+    check_sound(TABLE);
+    check_contains(out, "slow noise that no model states", TABLE);
+    put("noise.yaml", "imukit: 1\ngyro:\n  noise:\n    bias_instability: 0.5 deg/h\n"
+                      "accel:\n  noise:\n    bias_instability: 20 ug\n");
+    check_sound(TABLE " --model noise.yaml");
+    assert_null(strstr(out, "slow noise that no model states"));
+    sweep();
+}
+
 static void creeping_positions_are_found(void **state)
 {
     (void)state;
@@ -126,6 +140,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(filled_rows_are_found),
         cmocka_unit_test(references_are_compared),
+        cmocka_unit_test(unstated_noise_is_named),
         cmocka_unit_test(creeping_positions_are_found),
         cmocka_unit_test(temperatures_of_no_sensor_are_doubted),
     };

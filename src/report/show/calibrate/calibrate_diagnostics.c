@@ -476,8 +476,7 @@ static void add_placements(const imk_calibrate_log *b, imk_verdict *v)
     }
 }
 
-/* Slow noise of the sensor, which a table without times cannot show to be common to its rows. */
-static bool has_slow_noise(const imk_triad *triad)
+bool imki_states_slow_noise(const imk_triad *triad)
 {
     bool any = false;
     for (int axis = 0; axis < triad->axis_count; axis++)
@@ -486,7 +485,7 @@ static bool has_slow_noise(const imk_triad *triad)
     return triad->present && (any || triad->noise.gauss_markov_count > 0);
 }
 
-static bool has_parameters(const imk_calibrate_log *b, int sensor)
+bool imki_has_parameters(const imk_calibrate_log *b, int sensor)
 {
     size_t p = 0;
     while (p < b->result->parameter_count && b->result->parameter[p].sensor != sensor)
@@ -505,9 +504,9 @@ static void add_means(const imk_calibrate_log *b, const imk_calibrate_record *lo
         return;
     for (int sensor = 1; sensor >= 0; sensor--) {
         const imk_group_fit *fit = &b->result->group[groups[sensor]];
-        if (!has_parameters(b, sensor))
+        if (!imki_has_parameters(b, sensor))
             continue;
-        slow = slow || has_slow_noise(imk_model_triad(&b->calibration->model, sensor));
+        slow = slow || imki_states_slow_noise(imk_model_triad(&b->calibration->model, sensor));
         if (!log->no_sigma[sensor] || fit->count == 0)
             continue;
         const imk_unit unit =

@@ -31,6 +31,10 @@ void imki_scale_causes(const imk_calibrate_log *b, int sensor, double ratio, boo
 /* calibrate_lost_text.c: stretches of a log that look like rests and are not used, with times and
  * reasons. "": there is none */
 void imki_lost_text(const imk_calibrate_record *log, char *text, size_t size);
+/* calibrate_diagnostics.c: slow noise of the sensor, in the model; parameters of it that are
+ * estimated. */
+bool imki_states_slow_noise(const imk_triad *triad);
+bool imki_has_parameters(const imk_calibrate_log *b, int sensor);
 /* calibrate_untestable.c: a note of what another sound unit would show as well. */
 void imki_untestable(const imk_calibrate_log *b, imk_verdict *verdict);
 /* calibrate_words.c: nobody stated sigmas for the readings of this group, the scatter of its

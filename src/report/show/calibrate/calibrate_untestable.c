@@ -238,6 +238,24 @@ static void add_of_thermometer(const imk_calibrate_log *b, imki_text *list)
                        "degrees Celsius (the coefficients change by as much)");
 }
 
+/* What the observations of a test have in common shows in no residual. */
+static void add_of_slow_noise(const imk_calibrate_log *b, imki_text *list)
+{
+    bool timed = false, unknown = false;
+    for (size_t k = 0; k < b->count; k++)
+        timed = timed ||
+                (!b->record[k].record.means && b->record[k].procedure != IMK_PROCEDURE_THERMAL &&
+                 b->record[k].procedure != IMK_PROCEDURE_MAGNETOMETER);
+    for (int sensor = 0; sensor < 2 && b->result; sensor++)
+        unknown =
+            unknown || (imki_has_parameters(b, sensor) &&
+                        !imki_states_slow_noise(imk_model_triad(&b->calibration->model, sensor)));
+    if (timed && unknown)
+        add_item(list,
+                 "slow noise that no model states (with --into and a model of identify, every "
+                 "uncertainty includes it)");
+}
+
 void imki_untestable(const imk_calibrate_log *b, imk_verdict *v)
 {
     imki_text list = {0};
@@ -247,6 +265,7 @@ void imki_untestable(const imk_calibrate_log *b, imk_verdict *v)
     add_of_single_attitudes(b, &list);
     add_of_magnetometer(b, &list);
     add_of_thermometer(b, &list);
+    add_of_slow_noise(b, &list);
     if (list.bytes)
         imki_verdict_add(v, IMK_FINDING_NOTE, "not_testable", "Cannot be seen in %s: %s",
                          b->count == 1 ? "this log" : "these logs", list.bytes);
