@@ -208,81 +208,6 @@ bool imki_calibrate_useless(const imk_calibrate_log *b, const imk_calibrate_reco
 
 /* ---- all of them ----------------------------------------------------------------------------- */
 
-static void add(imk_verdict *v, imki_calibrate_message message)
-{
-    imki_verdict_add(v, message.level, message.code, "%s", message.text);
-}
-
-static bool is_of_sensors(double temperature)
-{
-    /* Military ranges begin at -55 degC; sensors for drill holes end at 150 to 200 degC. */
-    return temperature > 273.15 - 100 && temperature < 273.15 + 200;
-}
-
-/* Temperatures in which no sensor works are in another unit: kelvins and degrees Celsius, where the
- * one is read as the other, are. Degrees Fahrenheit are not told. */
-static void add_temperature_unit(imk_verdict *v, const imk_calibrate_record *log)
-{
-    const double zero = 273.15;
-    const imk_thermal_findings *f = log->thermal;
-    const int column = imk_log_find(&log->log, IMK_QUANTITY_TEMPERATURE, -1);
-    const char *unit = column < 0 ? "" : log->log.column[column].unit.text, *likely = NULL;
-    if (is_of_sensors(f->minimum) && is_of_sensors(f->maximum))
-        return;
-    if (is_of_sensors(f->minimum - zero) && is_of_sensors(f->maximum - zero))
-        likely = "K";
-    else if (is_of_sensors(f->minimum + zero) && is_of_sensors(f->maximum + zero))
-        likely = "degC";
-    add(v, imki_calibrate_say(
-               IMK_FINDING_WARNING, "temperature_unit",
-               "%.150s: the temperature goes from %.4g to %.4g degC, and no inertial sensor works "
-               "below -100 or above 200 degC: %s%s%s",
-               log->path, f->minimum - zero, f->maximum - zero,
-               likely    ? "the column looks like "
-               : unit[0] ? "check the unit in the header"
-                         : "check --temperature-unit",
-               likely ? likely : "",
-               !likely   ? ""
-               : unit[0] ? "; correct the unit in the header"
-                         : "; correct --temperature-unit"));
-}
-
-static void add_thermal(imk_verdict *v, const imk_calibrate_record *log)
-{
-    const imk_thermal_findings *f = log->thermal;
-    if (f)
-        add_temperature_unit(v, log);
-    for (int sensor = 0; f && sensor < 2; sensor++)
-        for (int i = 0; i < f->axis_count[sensor]; i++) {
-            const imk_thermal_axis *a = &f->axis[sensor][i];
-            if (a->single_valued || !(a->gap_largest > 0))
-                continue;
-            const imk_unit unit =
-                imk_unit_readable(imk_unit_of(imki_sensor_units[sensor]).dimension, a->gap_largest);
-            add(v, imki_calibrate_say(
-                       IMK_FINDING_WARNING, "hysteresis",
-                       "%s: the readings of %s %c while warming and while cooling differ by up to "
-                       "%.3g %s: no polynomial of the temperature can describe this difference; "
-                       "the error after compensation is %.3g %s rms",
-                       log->path, imki_sensor_titles[sensor], imk_axis_letter(i),
-                       a->gap_largest / unit.scale, unit.text, a->rms_compensated / unit.scale,
-                       unit.text));
-        }
-    if (f && !f->both_directions)
-        add(v, imki_calibrate_say(
-                   IMK_FINDING_NOTE, "one_direction",
-                   "%s: the temperature changed in one direction only, which cannot show "
-                   "hysteresis: sweep up and down",
-                   log->path));
-    if (f && f->accel_shared)
-        add(v, imki_calibrate_say(
-                   IMK_FINDING_NOTE, "one_pose",
-                   "%s: one pose cannot separate the temperature effects on accelerometer bias and "
-                   "scale factor: the coefficients hold for this pose only; sweep the temperature "
-                   "in several poses to separate them",
-                   log->path));
-}
-
 /* Mean squares over the rests of a log: of what rounding leaves in a mean, as the estimate is told
  * it, and of all that a mean is uncertain by; in the unit of the readings. */
 static double rounding_square(const imk_calibrate_record *log, int sensor, int axis)
@@ -329,7 +254,8 @@ static void add_coarse(const imk_calibrate_log *b, const imk_calibrate_record *l
                                imk_axis_letter(log->body_axis[sensor][i]));
         }
     if (names.bytes)
-        add(v, imki_calibrate_say(
+        imki_calibrate_add(
+            v, imki_calibrate_say(
                    IMK_FINDING_WARNING, "coarse",
                    "%.150s: the readings of %s are rounded to steps coarser than their noise, or "
                    "are cut off around zero: their means at rest are wrong by up to half a step, "
@@ -345,7 +271,8 @@ static void add_creeping(const imk_calibrate_record *log, imk_verdict *v)
     const size_t few = 2;
     const double share = 0.15;
     if (f->creeping > few && (double)f->creeping > share * (double)f->intervals)
-        add(v, imki_calibrate_say(
+        imki_calibrate_add(
+            v, imki_calibrate_say(
                    IMK_FINDING_WARNING, "creep",
                    "%.150s: in %zu of %zu positions the accelerometers change steadily while the "
                    "reference does not: the unit goes on turning, which the gyros feel, or the "
@@ -376,7 +303,8 @@ static void add_moving_reference(const imk_calibrate_log *b, const imk_calibrate
         return;
     const size_t without = rests_without_position(b, log);
     if ((double)without > many * (double)log->interval_count)
-        add(v, imki_calibrate_say(
+        imki_calibrate_add(
+            v, imki_calibrate_say(
                    IMK_FINDING_WARNING, "reference_moves",
                    "%.150s: in %zu of %zu rests the reference is not constant for long enough, and "
                    "they are not used: the table creeps, or the reference is too noisy or late; "
@@ -390,7 +318,8 @@ static void add_contradicted(const imk_calibrate_record *log, imk_verdict *v)
     const imk_procedure_findings *f = &log->findings;
     const char *label = f->contradicted ? imki_label_of(&log->record, f->contradicted_at) : NULL;
     if (label)
-        add(v, imki_calibrate_say(
+        imki_calibrate_add(
+            v, imki_calibrate_say(
                    IMK_FINDING_WARNING, "wrong_label",
                    "%.150s: the label %.60s names another face than the accelerometers show, and "
                    "the hold is left out (%zu such label%s): correct the labels",
@@ -408,7 +337,8 @@ static void add_lost(const imk_calibrate_record *log, imk_verdict *v)
     if (log->lost_count == 0)
         return;
     imki_lost_text(log, list, sizeof list);
-    add(v, imki_calibrate_say((double)log->lost_count > many * all ? IMK_FINDING_WARNING
+    imki_calibrate_add(
+        v, imki_calibrate_say((double)log->lost_count > many * all ? IMK_FINDING_WARNING
                                                                    : IMK_FINDING_NOTE,
                               "lost_rests",
                               "%.150s: %zu stretch%s between turns, of %g, look%s like %s, but "
@@ -443,7 +373,8 @@ static void add_undetermined(const imk_calibrate_log *b, const imk_calibrate_rec
             imki_list_item(&names, "%s", term);
     }
     if (names.bytes)
-        add(v, imki_calibrate_say(
+        imki_calibrate_add(
+            v, imki_calibrate_say(
                    IMK_FINDING_NOTE, "undetermined",
                    "%s does not determine %s (on all axes): the undetermined values are left as "
                    "before; apply inputs along other axes, or more levels",
@@ -460,7 +391,8 @@ static void add_placements(const imk_calibrate_log *b, imk_verdict *v)
     if (!fit || fit->count == 0 || imki_has_only_turns(b))
         return;
     if (!(fit->degrees_of_freedom >= 3))
-        add(v, imki_calibrate_say(
+        imki_calibrate_add(
+            v, imki_calibrate_say(
                    IMK_FINDING_NOTE, "placement_untested",
                    "this log does not test the placements: their uncertainty is as --placement "
                    "states; put the unit on each face three times to test it"));
@@ -468,7 +400,8 @@ static void add_placements(const imk_calibrate_log *b, imk_verdict *v)
         char advice[80] = "";
         if (fit->rms < imki_placement_most)
             snprintf(advice, sizeof advice, ", or state --placement %.2gdeg", fit->rms * degrees);
-        add(v, imki_calibrate_say(
+        imki_calibrate_add(
+            v, imki_calibrate_say(
                    IMK_FINDING_WARNING, "placement",
                    "the placements scatter by %.2g deg (1 sigma), %.2g times what --placement "
                    "states: this is included in every uncertainty; check the faces and the plate%s",
@@ -511,7 +444,8 @@ static void add_means(const imk_calibrate_log *b, const imk_calibrate_record *lo
             continue;
         const imk_unit unit =
             imk_unit_readable(imk_unit_of(imki_sensor_units[sensor]).dimension, fit->rms);
-        add(v, imki_calibrate_say(
+        imki_calibrate_add(
+            v, imki_calibrate_say(
                    IMK_FINDING_NOTE, "noise_of_residuals",
                    "%.150s does not say how well the %s means are known: their noise is taken from "
                    "the scatter of the residuals, %.3g %s rms, with %.1f degrees of freedom",
@@ -519,12 +453,14 @@ static void add_means(const imk_calibrate_log *b, const imk_calibrate_record *lo
                    fit->degrees_of_freedom));
     }
     if (!turns && log->procedure == IMK_PROCEDURE_MULTIPOSITION && log->settings.gyro_turns)
-        add(v, imki_calibrate_say(IMK_FINDING_NOTE, "no_turns",
+        imki_calibrate_add(
+            v, imki_calibrate_say(IMK_FINDING_NOTE, "no_turns",
                                   "%.150s has no turns: the scale factors and misalignments of the "
                                   "gyros are left as before",
                                   log->path));
     if (slow)
-        add(v, imki_calibrate_say(
+        imki_calibrate_add(
+            v, imki_calibrate_say(
                    IMK_FINDING_NOTE, "no_times",
                    "%.150s has no times: the slow noise that the model states is not included "
                    "beyond what the residuals show",
@@ -542,7 +478,8 @@ static void add_considered(const imk_calibrate_log *b, imk_verdict *v)
     for (size_t p = 0; p < b->calibration->parameter_count; p++)
         if (b->calibration->prior_guessed[p])
             sigma = b->calibration->prior_sigma[p] * fit->factor;
-    add(v,
+    imki_calibrate_add(
+        v,
         imki_calibrate_say(
             IMK_FINDING_NOTE, "g_sensitivity_assumed",
             "the attitudes do not separate the g-sensitivity of the gyros from their bias, or it "
@@ -575,7 +512,7 @@ static void add_opposite_turns(const imk_calibrate_log *b, imk_verdict *v)
             count == (size_t)b->result->model.gyro.axis_count && !isnan(b->settings.turn_angle)
                 ? IMK_FINDING_NOTE
                 : IMK_FINDING_WARNING;
-    add(v, m);
+    imki_calibrate_add(v, m);
 }
 
 imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
@@ -589,8 +526,8 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
             if (!diagnostic_matters(log, &log->diagnostic[d]))
                 continue;
             const imki_calibrate_message plain = diagnostic_message(b, log, &log->diagnostic[d]);
-            add(&v, imki_calibrate_say(plain.level, plain.code, "%.150s: %.1000s", log->path,
-                                       plain.text));
+            imki_calibrate_add(&v, imki_calibrate_say(plain.level, plain.code, "%.150s: %.1000s",
+                                                      log->path, plain.text));
         }
         add_undetermined(b, log, &v);
         add_means(b, log, &v);
@@ -599,7 +536,7 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
         add_contradicted(log, &v);
         add_creeping(log, &v);
         add_moving_reference(b, log, &v);
-        add_thermal(&v, log);
+        imki_thermal_verdict(log, &v);
         imki_turns_verdict(b, log, &v);
     }
     add_opposite_turns(b, &v);
@@ -613,7 +550,7 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
         if (!is_said(&v, of_scale ? of_logs : v.count, message.code) &&
             !(of_scale && is_said(&v, v.count, unit)) &&
             !(of_scale && b->diagnostic[d].value < 0 && is_said(&v, v.count, "left_handed")))
-            add(&v, message);
+            imki_calibrate_add(&v, message);
     }
     imki_untestable(b, &v);
     return v;

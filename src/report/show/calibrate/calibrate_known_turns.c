@@ -149,11 +149,6 @@ void imki_show_turns(const imk_calibrate_log *b, imk_result *result)
 /* ---- verdict ---------------------------------------------------------------------------------
  */
 
-static void add(imk_verdict *v, imki_calibrate_message message)
-{
-    imki_verdict_add(v, message.level, message.code, "%s", message.text);
-}
-
 static void add_other_moves(const imk_calibrate_record *log, imk_verdict *v)
 {
     const imk_turns_findings *f = &log->findings.known_turns;
@@ -173,7 +168,8 @@ static void add_other_moves(const imk_calibrate_record *log, imk_verdict *v)
         snprintf(range, sizeof range,
                  "; if all turns about %c read so, gyro_%c may have another range or unit",
                  imk_axis_letter(f->other_axis), imk_axis_letter(f->other_axis));
-    add(v, imki_calibrate_say(
+    imki_calibrate_add(
+        v, imki_calibrate_say(
                IMK_FINDING_NOTE, "other_move",
                "%s: %s left out: %s at %.2f s %s. If it was a turn, state its angle (--turn-angle, "
                "or a label such as \"z %+.3gdeg\"), and turn about one axis of the unit only%s",
@@ -191,7 +187,8 @@ static void add_other_gyros(const imk_calibrate_record *log, imk_verdict *v)
             if (f->other_gyro[i][j] == 0 || (i > j && f->other_gyro[j][i] > 0))
                 continue;
             if (f->other_gyro[j][i] > 0)
-                add(v, imki_calibrate_say(
+                imki_calibrate_add(
+                    v, imki_calibrate_say(
                            IMK_FINDING_WARNING, "swapped_axes",
                            "%s: gyro_%c and gyro_%c look exchanged: %zu turns whose labels name "
                            "%c are read by gyro_%c, and %zu that name %c by gyro_%c, and are left "
@@ -200,7 +197,8 @@ static void add_other_gyros(const imk_calibrate_record *log, imk_verdict *v)
                            log->path, label, gyro, f->other_gyro[i][j], label, gyro,
                            f->other_gyro[j][i], gyro, label));
             else
-                add(v,
+                imki_calibrate_add(
+                    v,
                     imki_calibrate_say(
                         IMK_FINDING_WARNING, "swapped_axes",
                         "%s: gyro_%c reads most of turns whose labels name %c (%zu of them, left "
@@ -225,7 +223,8 @@ static void add_scatter(const imk_calibrate_log *b, const imk_calibrate_record *
     if (f.torn[0] + f.torn[1] + f.torn[2] > 0)
         return; /* said of the axis that causes it */
     if (!(f.freedom > 0))
-        add(v, imki_calibrate_say(
+        imki_calibrate_add(
+            v, imki_calibrate_say(
                    IMK_FINDING_NOTE, "placement_untested",
                    "%s: no turn is repeated, so the log does not test the angles: their "
                    "uncertainty is as --placement states, %.2g deg; turn about each axis three "
@@ -237,7 +236,8 @@ static void add_scatter(const imk_calibrate_log *b, const imk_calibrate_record *
                      "check the mark or the edge that the unit is turned to, or state --placement "
                      "%.2gdeg, which counts for the misalignments too",
                      f.scatter / degree);
-        add(v, imki_calibrate_say(
+        imki_calibrate_add(
+            v, imki_calibrate_say(
                    IMK_FINDING_WARNING, "placement",
                    "%s: the angles of the turns scatter by %.2g deg (1 sigma), %.2g times what "
                    "--placement and the noise explain: the uncertainty of the scale factors "
@@ -253,7 +253,8 @@ static void add_odd(const imk_calibrate_record *log, imk_verdict *v)
     for (size_t k = 0; k < f->odd && k < IMK_ODD_TURNS_MAX; k++) {
         const imk_odd_turn *t = &f->odd_turn[k];
         const char axis = imk_axis_letter(t->axis);
-        add(v,
+        imki_calibrate_add(
+            v,
             imki_calibrate_say(
                 IMK_FINDING_WARNING, "odd_turn",
                 "%s: turn %d about %c, at %.2f s: %.4g deg recorded for %.5g deg stated, against "
@@ -264,11 +265,13 @@ static void add_odd(const imk_calibrate_record *log, imk_verdict *v)
                 t->read / degree, t->angle / degree, axis, t->read / degree));
     }
     if (f->odd > IMK_ODD_TURNS_MAX)
-        add(v, imki_calibrate_say(IMK_FINDING_WARNING, "odd_turn", "%s: %zu more such turns",
-                                  log->path, f->odd - IMK_ODD_TURNS_MAX));
+        imki_calibrate_add(v, imki_calibrate_say(IMK_FINDING_WARNING, "odd_turn",
+                                                 "%s: %zu more such turns", log->path,
+                                                 f->odd - IMK_ODD_TURNS_MAX));
     for (int j = 0; j < 3; j++)
         if (f->torn[j] > 0)
-            add(v, imki_calibrate_say(
+            imki_calibrate_add(
+                v, imki_calibrate_say(
                        IMK_FINDING_WARNING, "turns_disagree",
                        "%s: the turns about %c disagree by %.3g deg with each other, and are too "
                        "few to "
@@ -295,12 +298,14 @@ void imki_turns_verdict(const imk_calibrate_log *b, const imk_calibrate_record *
     add_other_moves(log, v);
     add_other_gyros(log, v);
     if (f->saturated > 0 && !saturation_is_said(log))
-        add(v, imki_calibrate_say(IMK_FINDING_WARNING, "saturated",
+        imki_calibrate_add(
+            v, imki_calibrate_say(IMK_FINDING_WARNING, "saturated",
                                   "%s: in %zu turn%s a gyro is at the end of its range: left out; "
                                   "turn more slowly, or choose a larger range in the device",
                                   log->path, f->saturated, f->saturated == 1 ? "" : "s"));
     if (f->missing > 0)
-        add(v, imki_calibrate_say(IMK_FINDING_WARNING, "turns_missing",
+        imki_calibrate_add(
+            v, imki_calibrate_say(IMK_FINDING_WARNING, "turns_missing",
                                   "%s: in %zu move%s samples are missing, or there is no rest "
                                   "beside it: left out",
                                   log->path, f->missing, f->missing == 1 ? "" : "s"));
@@ -308,7 +313,8 @@ void imki_turns_verdict(const imk_calibrate_log *b, const imk_calibrate_record *
     add_scatter(b, log, v);
     if (!imki_has_only_turns(b) || log != b->record)
         return;
-    add(v, imki_calibrate_say(
+    imki_calibrate_add(
+        v, imki_calibrate_say(
                IMK_FINDING_NOTE, "attitude_unknown",
                "without accelerometers the attitude is not known: the uncertainty of the bias "
                "includes the Earth's rotation and a g-sensitivity of %.2g deg/h/g (1 sigma, state "

@@ -33,6 +33,11 @@ imki_calibrate_message imki_calibrate_say(imk_finding_level level, const char *c
     return message;
 }
 
+void imki_calibrate_add(imk_verdict *v, imki_calibrate_message message)
+{
+    imki_verdict_add(v, message.level, message.code, "%s", message.text);
+}
+
 static bool is_near(double value, double due)
 {
     return fabs(value / due - 1) < factor_tolerance;

@@ -18,6 +18,7 @@ static const double imki_placement_most = 0.017453292519943295;
 imki_calibrate_message imki_calibrate_say(imk_finding_level level, const char *code,
                                           const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+void imki_calibrate_add(imk_verdict *verdict, imki_calibrate_message message);
 /* A diagnostic of a log: what was found, what is expected, what mends it. */
 imki_calibrate_message imki_message_on_log(const imk_calibrate_log *b,
                                            const imk_calibrate_record *log,

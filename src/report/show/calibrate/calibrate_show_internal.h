@@ -66,6 +66,8 @@ void imki_turn_fit(const imk_calibrate_log *b, imk_table *table); /* a row of th
 void imki_show_turns(const imk_calibrate_log *b, imk_result *result);
 void imki_turns_verdict(const imk_calibrate_log *b, const imk_calibrate_record *log,
                         imk_verdict *verdict);
+/* thermal_verdict.c: messages on a sweep of temperature. */
+void imki_thermal_verdict(const imk_calibrate_record *log, imk_verdict *verdict);
 /* magnetometer_show.c: its solution as data, in words, and as a row of the fit. */
 void imki_magnetometer_data(const imk_calibrate_log *b, imk_result *result);
 void imki_magnetometer_remarks(const imk_calibrate_log *b, imk_result *result);
