@@ -194,7 +194,7 @@ static void allow_coarse(const imki_zeros *z, imki_excess *e)
     }
     imki_excess here = {.due = 0};
     allow(&here, imk_exp((4 * l[0] - l[1]) / 3), (16 * v[0] + v[1]) / 9);
-    if (fmin(above[2], below[2]) >= TWO_MIN)
+    if (fmin(above[2], below[2]) >= ONE_MIN)
         allow(&here, imk_exp(3 * l[0] - 3 * l[1] + l[2]), 9 * v[0] + 9 * v[1] + v[2]);
     e->counted += z->coarse;
     e->due += here.due;
