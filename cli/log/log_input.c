@@ -12,6 +12,13 @@
 const option log_input_options[LOG_INPUT_OPTIONS] = {
     {"rate", OPTION_QUANTITY, AT(file.rate), .letter = 'r', .value = "RATE", .unit = "Hz",
      .choices = "1e-9..1e9", .help = "sampling rate, needed when the log has no time column"},
+    {"format", OPTION_TEXT, AT(file.format), .value = "NAME",
+     .help = "format of a log whose content does not tell it"},
+    {"topic", OPTION_TEXT, AT(file.topic), .value = "NAME",
+     .help = "which sensor of a log that holds several, such as /imu/data; imukit info LOG lists "
+             "them"},
+    {"instance", OPTION_INTEGER, AT(instance), .value = "N", .choices = "0-999",
+     .help = "which of several sensors of one name"},
     {"columns", OPTION_TEXT, AT(file.columns), .value = "NAMES",
      .help = "names of the columns of a log without header, such as time,gyro_x,gyro_y,gyro_z; - "
              "skips a column"},
@@ -42,6 +49,7 @@ imk_log_settings log_input_settings(const log_input *input)
 {
     imk_log_settings settings = input->file;
     settings.cookie = imk_log_default().cookie;
+    settings.instance = input->instance.given ? (int)input->instance.value + 1 : 0;
     return settings;
 }
 

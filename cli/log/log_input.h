@@ -11,13 +11,14 @@
 /* What the options of log_input_options fill. */
 typedef struct log_input {
     imk_log_settings file;
+    option_integer instance;
     int gaps; /* imk_gap_policy; a verb that can do with missing samples begins with IMK_GAPS_KEEP
                */
     bool missing_allowed; /* it can: --gaps keep is no error */
 } log_input;
 
 /* How to read a file, and last what analysis does about gaps, which conversion leaves out. */
-enum { LOG_INPUT_OPTIONS = 10, LOG_FORMAT_OPTIONS = LOG_INPUT_OPTIONS - 1 };
+enum { LOG_INPUT_OPTIONS = 13, LOG_FORMAT_OPTIONS = LOG_INPUT_OPTIONS - 1 };
 extern const option log_input_options[LOG_INPUT_OPTIONS];
 #define LOG_INPUT_GROUP(offset)                                                                    \
     {                                                                                              \

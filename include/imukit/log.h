@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file log.h
- *  Sensor logs: CSV (plain, .gz, .zst) and .npy, read and written as streams of rows.
+ *  Sensor logs of many formats, read and written as streams of rows.
  *
  *  CSV: a header `time [s],gyro_x [deg/s],…,accel_x [g],…,temperature [degC]` in any order; lines
  *  starting with # are comments; comma, semicolon, tab or blanks separate. Increments
@@ -22,23 +22,28 @@ IMK_BEGIN_C
 
 /** A format of logs. */
 typedef struct imk_log_format {
-    const char *name;      /**< its name, which is also the ending of its files: ".npy" */
-    const char *beginning; /**< first bytes of its files; NULL: only the ending tells the format */
+    const char *name;      /**< what imk_log_settings.format takes: "npy" */
+    const char *title;     /**< its name in messages: ".npy", "ROS 1 bag" */
+    const char *endings;   /**< endings of its files, with blanks between: ".h5 .hdf5"; "": none */
+    const char *beginning; /**< first bytes of its files; NULL: they do not tell, or not alone */
     const char *companion; /**< ending added for the file of names and units that comes with each
                               file, such as ".columns" for FILE.npy.columns; NULL: there is none */
     bool written;          /**< the format can be written, too */
 } imk_log_format;
 
-/** Format `index`, CSV first; NULL beyond the last. */
+/** Format `index`, CSV first; NULL beyond the last. In the order in which contents are compared
+ * with them. */
 IMK_API const imk_log_format *imk_log_format_get(size_t index);
-/** Format of a log by its name, where a final .gz or .zst is ignored; CSV if the name does not
- *  tell.
+/** Format of a log by the name of its file, where a final .gz or .zst is ignored; CSV if that does
+ *  not tell.
  *  @param path  may be NULL */
 IMK_API const imk_log_format *imk_log_format_of(const char *path);
 /** Format of a log by its first bytes; NULL: they do not tell. */
 IMK_API const imk_log_format *imk_log_format_begun(const char *begin, size_t size);
-/** List the names of all formats except CSV, to follow "CSV" in a message: ", .bag or .npy".
- *  @param last     text before the last name: " or "
+/** Format of a name of imk_log_format.name; NULL: there is none. */
+IMK_API const imk_log_format *imk_log_format_named(const char *name);
+/** List the titles of all formats except CSV, to follow "CSV" in a message: ", .npy or ROS 1 bag".
+ *  @param last     text before the last title: " or "
  *  @param written  true: only formats that can be written
  *  @return text, of at most size - 1 bytes */
 IMK_API const char *imk_log_formats_text(const char *last, bool written, size_t size, char *text);
@@ -50,6 +55,13 @@ typedef struct imk_log_settings {
     const char *columns; /**< names for a file without header: "time,gyro_x,gyro_y,…"; "-" skips */
     /** Units for columns without a unit in the header. */
     const char *gyro_unit, *accel_unit, *time_unit, *temperature_unit;
+    /** Name of the format (imk_log_format.name) for files that do not tell it; NULL: by content. */
+    const char *format;
+    /** Which of the sensors in a log that holds several (imk_log_stream): its name, or an ending of
+     * it that only one has; NULL: the only one. */
+    const char *topic;
+    /** Which of the sensors of one name: its imk_log_stream.instance plus 1; 0: the only one. */
+    int instance;
     double rate; /**< sampling rate [Hz]; required without a time column; 0: from the times */
     /** Only rows from `after` to `before` seconds from the first one are read; 0: from the first,
      *  to the last. Times stay as they are; findings are of the rows read. */
@@ -67,6 +79,19 @@ typedef struct imk_log_settings {
 /** Everything from the header of the file. */
 IMK_API imk_log_settings imk_log_default(void);
 
+/** A sensor in a log that may hold several: a topic of a bag, messages of one kind and instance of
+ * a flight log. */
+typedef struct imk_log_stream {
+    char name[96];     /**< "/imu/data", "sensor_accel"; "" in formats that hold one sensor only */
+    char kind[64];     /**< type of the messages: "sensor_msgs/msg/Imu" */
+    int instance;      /**< of those of the same name, from 0; -1: names are different */
+    bool readable;     /**< it holds gyros or accelerometers that imk_log_open() reads */
+    bool estimated;    /**< `samples` is an estimate */
+    uint64_t samples;  /**< 0: not known */
+    double begin, end; /**< times of its first and last sample [s], of the clock of the log; NaN:
+                          not known */
+} imk_log_stream;
+
 typedef struct imk_log_reader imk_log_reader;
 
 /** Open a log and read its header. `path` may be "-" (standard input), a pipe or a compressed file.
@@ -80,11 +105,27 @@ typedef struct imk_log_reader imk_log_reader;
  *
  *  The message of every error ends with the exact option to add.
  *  @return IMK_ERROR_OPEN, _READ, _WRITE (of the temporary copy), _EMPTY, _FORMAT, _COMPRESSED,
- *          _COLUMN, _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, … */
+ *          _COLUMN, _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, _NAME_UNKNOWN (the
+ * format; the topic, or several and none chosen), _UNSUPPORTED (a pipe, of a format that needs a
+ *          file; a format that is only known by name), … */
 IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settings,
                                 imk_log_reader **reader, imk_error *error);
 
-/** As imk_log_open(), for a CSV text in memory, which must outlive the reader. */
+/** The sensors of a log, without choosing one: as imk_log_open(), but settings.topic and .instance
+ *  are left aside. Only what stands at the beginning, at the end and in an index of the file is
+ * read.
+ *  @param stream  receives up to `most`, those that can be read first
+ *  @param count   receives their number, which may be above `most`
+ *  @return errors of imk_log_open(), but for a log in which there is nothing that can be read */
+IMK_API imk_status imk_log_streams(const char *path, const imk_log_settings *settings, size_t most,
+                                   imk_log_stream *stream, size_t *count, imk_error *error);
+
+/** The sensor that is read. */
+IMK_API const imk_log_stream *imk_log_stream_get(const imk_log_reader *reader);
+/** The format of the log. */
+IMK_API const imk_log_format *imk_log_format_read(const imk_log_reader *reader);
+
+/** As imk_log_open(), for a log in memory, which must outlive the reader. */
 IMK_API imk_status imk_log_open_memory(const char *text, size_t size,
                                        const imk_log_settings *settings, imk_log_reader **reader,
                                        imk_error *error);
@@ -116,6 +157,11 @@ IMK_API void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint
  *          line that was cut in the middle is an error, not a row. */
 IMK_API imk_status imk_log_read(imk_log_reader *reader, size_t max_rows, double *const *columns,
                                 size_t *rows, imk_error *error);
+
+/** Go to about this fraction of the log, 0 … 1; the next rows are read from there, and counts and
+ *  times begin anew. For a look at a long log.
+ *  @return IMK_ERROR_UNSUPPORTED (a pipe, a compressed file, a format without this) */
+IMK_API imk_status imk_log_seek(imk_log_reader *reader, double fraction, imk_error *error);
 
 /** Text number `index` of the label columns, in the order of appearance; NULL beyond the last. */
 IMK_API const char *imk_log_label(const imk_log_reader *reader, size_t index);

@@ -29,6 +29,13 @@ typedef enum imk_quantity {
     IMK_QUANTITY_MAGNETIC /**< magnetic flux density */
 } imk_quantity;
 
+/** Who says what the unit of a column is. */
+typedef enum imk_unit_origin {
+    IMK_UNIT_OF_HEADER = 0, /**< the file, beside the column */
+    IMK_UNIT_OF_FORMAT,     /**< the definition of the format or of the message */
+    IMK_UNIT_OF_SETTINGS    /**< imk_log_settings */
+} imk_unit_origin;
+
 /** One column of a log. */
 typedef struct imk_log_column {
     char name[48]; /**< "gyro_x" */
@@ -38,6 +45,7 @@ typedef struct imk_log_column {
     bool increment; /**< the file holds increments of the integral */
     bool label; /**< the file holds texts (section names, …): the value is the index of the text
                      in the reader's list, see imk_log_label() */
+    imk_unit_origin unit_origin;
 } imk_log_column;
 
 /** Counts and times of the rows read so far. Rows count from 1, the first data row.
@@ -71,6 +79,10 @@ typedef struct imk_log_findings {
     /** Gaps about as far from the gap before as that was from its predecessor. */
     size_t steady_gaps;
     size_t doubled; /**< rows equal to the row before in time and values, where these were found */
+    /** Rows, messages or blocks of the file that cannot be read and are left out; the place of the
+     *  first, as rows before it. */
+    size_t damaged, first_damaged;
+    bool cut_short; /**< the file ends within a row, message or block, which is left out */
 } imk_log_findings;
 
 /** Where the rows of a record come from. A function that the source does not offer is NULL. */

@@ -72,6 +72,11 @@ static const struct message {
                     "stopped: use --gaps longest (the longest clean stretch)"},
     {"not_finite", "{0} row{0s} with a value that is not a finite number or beyond 1e60, first in "
                    "row {1}: counted as missing"},
+    /* record_check.c */
+    {"damaged", "{0} row{0s}, messages or blocks of the file cannot be read and are left out, the "
+                "first behind row {2} of {1}"},
+    {"cut_short", "the file ends in the middle of a row, message or block; what is whole, {0} "
+                  "row{0s}, is used; if the file is a copy, copy it again"},
     {"unordered", UNORDERED},
     {"stamps:unordered", UNORDERED},
     {"missing",

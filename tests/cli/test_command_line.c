@@ -170,6 +170,14 @@ static void test_whole_numbers(void **state)
         {"simulate AHRS", "threads", "1", "65536"},
         {"simulate AHRS", "substeps", "1", "512"},
         {"spectrum x.csv", "threads", "1", "65536"},
+        {"allan x.csv", "instance", "0", "999"},
+        {"calibrate x.csv", "instance", "0", "999"},
+        {"compensate x.csv m.yaml", "instance", "0", "999"},
+        {"convert x.csv y.csv", "instance", "0", "999"},
+        {"evaluate x.csv", "instance", "0", "999"},
+        {"identify x.csv", "instance", "0", "999"},
+        {"navigate x.csv", "instance", "0", "999"},
+        {"spectrum x.csv", "instance", "0", "999"},
     };
     static const char *const no_numbers[] = {"-1", "+5", "1e3", "0x10", "''", "' 1'", "1.0", "inf"};
     static const char *const beyond[] = {"18446744073709551615", "18446744073709551616",

@@ -38,6 +38,7 @@ struct imki_input {
     int file;      /* -1: none */
     bool standard; /* it is standard input, which stays open */
     bool copy;     /* it is a copy, which others read too */
+    bool regular;  /* a file, at whose first byte reading began */
     off_t rewind;  /* where standard input is put back to at the end; -1: nowhere */
     char path[96]; /* for messages */
     uint64_t file_size;
@@ -325,6 +326,7 @@ static imk_status open_regular(imki_input *input, const char *path, bool kept)
         input->file_size = (uint64_t)(about.st_size - begin);
     if (kept && input->standard)
         input->rewind = begin;
+    input->regular = S_ISREG(about.st_mode) && begin == 0 && !input->standard;
 #ifdef POSIX_FADV_SEQUENTIAL
     posix_fadvise(input->file, 0, 0, POSIX_FADV_SEQUENTIAL);
 #endif
@@ -442,6 +444,28 @@ void imki_input_progress(const imki_input *input, uint64_t *done, uint64_t *size
 {
     *done = input->fetched - (input->raw_end - input->raw_begin);
     *size = input->file_size;
+}
+
+int imki_input_file(const imki_input *input)
+{
+    return input->encoding == ENCODING_PLAIN && (input->regular || input->copy) ? input->file : -1;
+}
+
+imk_status imki_input_seek(imki_input *input, uint64_t place, imk_error *error)
+{
+    const bool memory = input->encoding == ENCODING_MEMORY;
+    if (!memory && imki_input_file(input) < 0)
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, input->path,
+                             "in a pipe and in compressed data there is no way to another place",
+                             "write it to a plain file");
+    if (memory && place > input->size)
+        place = input->size;
+    if (!memory && !input->copy && lseek(input->file, (off_t)place, SEEK_SET) < 0)
+        return imki_system_error(error, IMK_ERROR_READ, input->path, errno);
+    input->fetched = place;
+    input->raw_begin = input->raw_end = 0;
+    input->file_ended = false;
+    return IMK_OK;
 }
 
 void imki_input_close(imki_input *input)

@@ -39,6 +39,14 @@ const char *imki_input_mapped(const imki_input *input, size_t *size);
 imk_status imki_input_read(imki_input *input, char *buffer, size_t capacity, size_t *got,
                            imk_error *error);
 
+/* The file itself, where it is a plain file that can be read at any place by pread(); else -1: a
+ * pipe, compressed, standard input, memory. It stays the input's. */
+int imki_input_file(const imki_input *input);
+
+/* Read on from this byte of a plain file (imki_input_file()) or of memory.
+ * @return IMK_ERROR_READ; IMK_ERROR_UNSUPPORTED of other inputs */
+imk_status imki_input_seek(imki_input *input, uint64_t place, imk_error *error);
+
 /* Bytes of the file consumed (compressed ones, if it is) and its size, 0 when not known. */
 void imki_input_progress(const imki_input *input, uint64_t *done, uint64_t *size);
 

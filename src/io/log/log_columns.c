@@ -331,7 +331,7 @@ static imk_status add_cell(imki_log_layout_read *layout, size_t cell, imki_log_p
     layout->cell_column[cell] = -1;
     layout->cell_factor[cell] = 1.0;
     trim(&name);
-    if (settings->columns && name.end - name.begin == 1 && *name.begin == '-')
+    if (name.end - name.begin == 1 && *name.begin == '-')
         return IMK_OK;
     const size_t index = layout->column_count;
     imk_log_column *column = &layout->column[index];

@@ -16,6 +16,7 @@ enum { LOOK_AHEAD = 16 << 20 }; /* for the first cell of a column that is not bl
 typedef struct csv {
     imki_log_cells_reader *read_cells;
     size_t slow_left, slow_run; /* rows to read in their general form before trying the fast way */
+    uint64_t begin;             /* byte of the first row */
 } csv;
 
 /* Texts of other systems, which other programs convert. @param size  above 0 */
@@ -330,6 +331,7 @@ static imk_status open_csv(imk_log_reader *reader, imk_error *error)
     if (status != IMK_OK)
         return status;
     const size_t line = text->line;
+    state->begin = imki_log_text_place(text);
     text->hold = text->next;
     status = find_labels(reader, error);
     go_back(text, line);
@@ -363,6 +365,26 @@ static imk_status read_row(imk_log_reader *reader, double *const *out, size_t *r
     if (not_finite && reader->not_finite++ == 0)
         reader->first_not_finite = reader->rows + *rows;
     return IMK_OK;
+}
+
+/* To the beginning of the line behind that place. */
+static imk_status seek_row(imk_log_reader *reader, double fraction, imk_error *error)
+{
+    const csv *state = reader->state;
+    imki_log_piece line;
+    uint64_t done, size;
+    bool whole;
+    imk_log_progress(reader, &done, &size);
+    if (size < state->begin)
+        size = state->begin;
+    const uint64_t to = state->begin + (uint64_t)(fraction * (double)(size - state->begin));
+    imk_status status = imki_log_text_seek(&reader->text, to, error);
+    if (status != IMK_OK || to == state->begin)
+        return status;
+    status = imki_log_text_need_line(&reader->text, error);
+    if (status == IMK_OK)
+        imki_log_text_take_line(&reader->text, &line.begin, &line.end, &whole);
+    return status;
 }
 
 static imk_status read_rows(imk_log_reader *reader, size_t max_rows, double *const *out,
@@ -424,6 +446,7 @@ static void begin(imki_log_output *log)
 
 const imki_log_codec imki_log_csv = {.open = open_csv,
                                      .read = read_rows,
+                                     .seek = seek_row,
                                      .comment = write_comment,
                                      .begin = begin,
                                      .format = imki_log_format_text};

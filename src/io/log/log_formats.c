@@ -19,14 +19,19 @@ const imk_log_format *imk_log_format_get(size_t index)
     return index < FORMATS ? &formats[index] : NULL;
 }
 
-static bool ends_in(const char *path, const char *name)
+/* @param endings  with blanks between */
+static bool ends_in(const char *path, const char *endings)
 {
     static const char *const compressed[] = {"", ".gz", ".zst"};
     char ending[32];
-    for (size_t i = 0; i < sizeof compressed / sizeof compressed[0]; i++) {
-        snprintf(ending, sizeof ending, "%s%s", name, compressed[i]);
-        if (imk_has_ending(path, ending))
-            return true;
+    for (const char *at = endings; *at; at += strspn(at, " ")) {
+        const size_t length = strcspn(at, " ");
+        for (size_t i = 0; i < sizeof compressed / sizeof compressed[0]; i++) {
+            snprintf(ending, sizeof ending, "%.*s%s", (int)length, at, compressed[i]);
+            if (imk_has_ending(path, ending))
+                return true;
+        }
+        at += length;
     }
     return false;
 }
@@ -34,7 +39,7 @@ static bool ends_in(const char *path, const char *name)
 const imk_log_format *imk_log_format_of(const char *path)
 {
     for (size_t i = 1; i < FORMATS; i++)
-        if (ends_in(path, formats[i].name))
+        if (ends_in(path, formats[i].endings))
             return &formats[i];
     return &formats[0];
 }
@@ -49,23 +54,24 @@ const imk_log_format *imk_log_format_begun(const char *begin, size_t size)
     return NULL;
 }
 
-const imk_log_format *imki_log_format_recognise(const char *path, const char *begin, size_t size)
+const imk_log_format *imk_log_format_named(const char *name)
 {
-    const imk_log_format *begun = imk_log_format_begun(begin, size);
-    const imk_log_format *named = imk_log_format_of(path);
-    return begun ? begun : named->beginning ? &formats[0] : named;
+    for (size_t i = 0; i < FORMATS; i++)
+        if (strcmp(formats[i].name, name) == 0)
+            return &formats[i];
+    return NULL;
 }
 
 const char *imk_log_formats_text(const char *last, bool written, size_t size, char *text)
 {
-    const char *name[FORMATS];
+    const char *title[FORMATS];
     size_t count = 0, used = 0;
     for (size_t i = 1; i < FORMATS; i++)
         if (formats[i].written || !written)
-            name[count++] = formats[i].name;
+            title[count++] = formats[i].title;
     text[0] = '\0';
     for (size_t i = 0; i < count && used < size; i++)
         used += (size_t)snprintf(text + used, size - used, "%s%s", i + 1 < count ? ", " : last,
-                                 name[i]);
+                                 title[i]);
     return text;
 }

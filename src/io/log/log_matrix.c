@@ -63,7 +63,7 @@ static imk_status check_count(const imk_log_reader *reader, size_t count, uint64
     char found[96], expected[160], file[48];
     if (count == due)
         return IMK_OK;
-    snprintf(file, sizeof file, "give the names in FILE%s.columns, or ", reader->format->name);
+    snprintf(file, sizeof file, "give the names in FILE%s.columns, or ", reader->format->endings);
     snprintf(found, sizeof found, "%zu name%s given for %llu columns", count,
              count == 1 ? " is" : "s are", (unsigned long long)due);
     snprintf(expected, sizeof expected,
@@ -119,7 +119,10 @@ imk_status imki_log_matrix_open(imk_log_reader *reader, uint64_t columns, uint64
         status = read_names(path, names, error);
     if (status != IMK_OK)
         return status;
-    *matrix = (imki_matrix){.value_size = value_size, .rows_left = rows};
+    *matrix = (imki_matrix){.value_size = value_size,
+                            .begin = imki_log_text_place(&reader->text),
+                            .rows = rows,
+                            .rows_left = rows};
     imki_log_piece cells[IMK_LOG_COLUMNS_MAX];
     const size_t count = settings->columns ? split_names(settings->columns, false, cells)
                                            : split_names(names, true, cells);
@@ -129,6 +132,19 @@ imk_status imki_log_matrix_open(imk_log_reader *reader, uint64_t columns, uint64
     if (status == IMK_OK)
         status = imki_log_layout_make(cells, count, settings, &reader->layout, error);
     return status == IMK_OK ? look_at_rows(reader, matrix, error) : status;
+}
+
+imk_status imki_log_matrix_seek(imk_log_reader *reader, double fraction, imk_error *error)
+{
+    imki_matrix *matrix = reader->state;
+    const size_t row_size = reader->layout.cell_count * matrix->value_size;
+    const uint64_t row = (uint64_t)(fraction * (double)matrix->rows);
+    const uint64_t to = row < matrix->rows ? row : matrix->rows;
+    const imk_status status =
+        imki_log_text_seek(&reader->text, matrix->begin + to * row_size, error);
+    if (status == IMK_OK)
+        matrix->rows_left = matrix->rows - to;
+    return status;
 }
 
 static void copy_cell(const char *source, size_t stride, size_t value_size, double factor,
@@ -154,7 +170,7 @@ imk_status imki_log_matrix_read(imk_log_reader *reader, size_t max_rows, double 
     const size_t at_hand = (size_t)(text->end - text->next) / row_size;
     if (wanted > 0 && at_hand == 0) {
         char found[64];
-        snprintf(found, sizeof found, "the %s file is cut short", reader->format->name);
+        snprintf(found, sizeof found, "the %s file is cut short", reader->format->title);
         return imk_error_set(error, IMK_ERROR_FORMAT, "", found,
                              "its header announces more rows: copy the file again");
     }

@@ -9,6 +9,7 @@
 /* The state of a reader. */
 typedef struct imki_matrix {
     size_t value_size;
+    uint64_t begin, rows; /* byte of the first row; their number */
     uint64_t rows_left;
 } imki_matrix;
 
@@ -19,8 +20,9 @@ typedef struct imki_matrix {
 imk_status imki_log_matrix_open(imk_log_reader *reader, uint64_t columns, uint64_t rows,
                                 size_t value_size, imk_error *error);
 
-/* As imki_log_codec.read, and .create: the file of names. Rows are those of
+/* As imki_log_codec.seek, .read, and .create: the file of names. Rows are those of
  * imki_log_format_matrix(). */
+imk_status imki_log_matrix_seek(imk_log_reader *reader, double fraction, imk_error *error);
 imk_status imki_log_matrix_read(imk_log_reader *reader, size_t max_rows, double *const *out,
                                 size_t *rows, imk_error *error);
 imk_status imki_log_matrix_create(imki_log_output *log, const char *path, imk_error *error);

@@ -69,6 +69,7 @@ static imk_status end(imki_log_output *log, imk_error *error)
 
 const imki_log_codec imki_log_npy = {.open = open_npy,
                                      .read = imki_log_matrix_read,
+                                     .seek = imki_log_matrix_seek,
                                      .create = create,
                                      .begin = begin,
                                      .format = imki_log_format_matrix,

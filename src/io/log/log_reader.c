@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Reading a log: rows in blocks, as its format gives them; then per block what needs neighbours:
  * times, intervals, increments, findings. */
+#define _POSIX_C_SOURCE 200809L
 #include "log_reader_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
-enum { LOOK = 64 }; /* bytes that tell the format */
+enum { LOOK = 4096 }; /* bytes that tell the format */
 
-static const uint32_t settings_cookie = 0x4C4F4732; /* "LOG2" */
+static const uint32_t settings_cookie = 0x4C4F4733; /* "LOG3" */
 
 imk_log_settings imk_log_default(void)
 {
@@ -30,30 +33,74 @@ static imk_status check_settings(const imk_log_settings *settings, imk_error *er
     return imki_log_part_check(settings, error);
 }
 
+static imk_status refuse_format(const char *name, imk_error *error)
+{
+    char found[96], expected[160] = "one of";
+    size_t used = strlen(expected);
+    snprintf(found, sizeof found, "no format is called \"%.40s\"", name);
+    const imk_log_format *format;
+    for (size_t i = 0; (format = imk_log_format_get(i)) != NULL && used < sizeof expected; i++)
+        used += (size_t)snprintf(expected + used, sizeof expected - used, "%s %s", i > 0 ? "," : "",
+                                 format->name);
+    return imk_error_set(error, IMK_ERROR_NAME_UNKNOWN, "format", found, expected);
+}
+
+/* The format, by the settings, or by the content; that of folders where there is no input. */
+static imk_status find_format(imk_log_reader *reader, const imki_input *input, imk_error *error)
+{
+    const imki_log_text *text = &reader->text;
+    const char *name = reader->settings.format;
+    reader->format =
+        name    ? imk_log_format_named(name)
+        : input ? imki_log_recognise(reader->path, text->next, (size_t)(text->end - text->next))
+                : imki_log_format_of_folders();
+    if (!reader->format)
+        return refuse_format(name, error);
+    reader->codec = imki_log_codec_of(reader->format);
+    if (!input && !reader->codec->folders) {
+        char found[96];
+        snprintf(found, sizeof found, "it is a folder, and a log of the format %.40s is a file",
+                 reader->format->title);
+        return imk_error_set(error, IMK_ERROR_OPEN, reader->path, found, "");
+    }
+    if (input && reader->codec->needs_file && imki_input_file(input) < 0) {
+        char found[96];
+        snprintf(found, sizeof found, "%.32s is not read from a pipe, .gz, .zst or memory",
+                 reader->format->title);
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, reader->path, found,
+                             "write it to a plain file and give that");
+    }
+    return IMK_OK;
+}
+
+/* @param input  NULL: a folder */
 static imk_status open_reader(imk_log_reader *reader, imki_input *input, imk_error *error)
 {
     imki_log_text *text = &reader->text;
-    imk_status status = imki_log_text_start(text, input, error);
-    if (status == IMK_OK)
+    imk_status status = input ? imki_log_text_start(text, input, error) : IMK_OK;
+    if (status == IMK_OK && input)
         status = imki_log_text_need(text, LOOK, error);
     if (status != IMK_OK)
         return status;
     reader->rate = reader->settings.rate;
-    reader->format =
-        imki_log_format_recognise(reader->path, text->next, (size_t)(text->end - text->next));
-    reader->codec = imki_log_codec_of(reader->format);
-    status = reader->codec->open(reader, error);
+    status = find_format(reader, input, error);
+    if (status == IMK_OK)
+        status = reader->codec->open(reader, error);
     if (status != IMK_OK)
         return status;
+    for (size_t i = 0; i < reader->layout.column_count && reader->codec->defines_units; i++)
+        reader->layout.column[i].unit_origin = IMK_UNIT_OF_FORMAT;
     reader->last_time = (double)NAN;
     imki_record_times_start(&reader->times, reader->rate > 0.0 ? 1.0 / reader->rate : 0.0);
     if (reader->layout.time_column >= 0)
         reader->times.findings.time_origin =
+            reader->origin_before +
             reader->time_origin * reader->layout.factor[reader->layout.time_column];
     return IMK_OK;
 }
 
-/* Takes the input, also on error. */
+/* Takes the input, also on error. On error the reader is made only if there is memory; it is to be
+ * closed. */
 static imk_status make_reader(imki_input *input, const char *path, const imk_log_settings *settings,
                               imk_log_reader **reader, imk_error *error)
 {
@@ -64,28 +111,86 @@ static imk_status make_reader(imki_input *input, const char *path, const imk_log
     }
     made->path = path;
     made->settings = *settings;
-    const imk_status status = open_reader(made, input, error);
-    if (status != IMK_OK) {
-        imk_log_close(made);
-        return status;
-    }
     *reader = made;
-    return IMK_OK;
+    return open_reader(made, input, error);
 }
 
-imk_status imk_log_open(const char *path, const imk_log_settings *settings, imk_log_reader **reader,
-                        imk_error *error)
+static bool is_folder(const char *path)
+{
+    struct stat about;
+    return path && imki_log_format_of_folders() && stat(path, &about) == 0 &&
+           S_ISDIR(about.st_mode);
+}
+
+/* As imk_log_open(), but the reader may be made also on error. NULL: it is not. */
+static imk_status open_path(const char *path, const imk_log_settings *settings,
+                            imk_log_reader **reader, imk_error *error)
 {
     const imk_log_settings usual = imk_log_default();
     settings = settings ? settings : &usual;
-    imki_input *input;
+    imki_input *input = NULL;
+    *reader = NULL;
     imk_status status = check_settings(settings, error);
-    if (status == IMK_OK)
+    if (status == IMK_OK && !is_folder(path))
         status = settings->reopened ? imki_input_open_kept(path, &input, error)
                                     : imki_input_open(path, &input, error);
     if (status == IMK_OK)
         status = make_reader(input, path, settings, reader, error);
     return status;
+}
+
+/* The reader on success only. */
+static imk_status give(imk_log_reader *made, imk_status status, imk_log_reader **reader)
+{
+    if (status == IMK_OK)
+        *reader = made;
+    else
+        imk_log_close(made);
+    return status;
+}
+
+imk_status imk_log_open(const char *path, const imk_log_settings *settings, imk_log_reader **reader,
+                        imk_error *error)
+{
+    imk_log_reader *made;
+    const imk_status status = open_path(path, settings, &made, error);
+    return give(made, status, reader);
+}
+
+imk_status imk_log_streams(const char *path, const imk_log_settings *settings, size_t most,
+                           imk_log_stream *stream, size_t *count, imk_error *error)
+{
+    const imk_log_settings usual = imk_log_default();
+    imk_log_settings any = settings ? *settings : usual;
+    imk_log_reader *made;
+    any.topic = NULL;
+    any.instance = 0;
+    imk_status status = open_path(path, &any, &made, error);
+    /* That none is chosen, or none can be read, is no error here. */
+    if (made && made->stream_count > 0 &&
+        (status == IMK_ERROR_NAME_UNKNOWN || status == IMK_ERROR_EMPTY))
+        status = IMK_OK;
+    if (status == IMK_OK) {
+        *count = made->stream_count > 0 ? made->stream_count : 1;
+        for (size_t i = 0; i < made->stream_count && i < most; i++)
+            stream[i] = made->streams[i];
+        if (made->stream_count == 0 && most > 0)
+            stream[0] = *imk_log_stream_get(made);
+    }
+    imk_log_close(made);
+    return status;
+}
+
+const imk_log_stream *imk_log_stream_get(const imk_log_reader *reader)
+{
+    static const imk_log_stream only = {
+        .instance = -1, .readable = true, .begin = (double)NAN, .end = (double)NAN};
+    return reader->stream_count > 0 ? &reader->streams[reader->stream] : &only;
+}
+
+const imk_log_format *imk_log_format_read(const imk_log_reader *reader)
+{
+    return reader->format;
 }
 
 imk_status imk_log_open_memory(const char *text, size_t size, const imk_log_settings *settings,
@@ -95,15 +200,16 @@ imk_status imk_log_open_memory(const char *text, size_t size, const imk_log_sett
     settings = settings ? settings : &usual;
     imki_input *input;
     imk_status status = check_settings(settings, error);
+    imk_log_reader *made = NULL;
     if (status == IMK_OK && imki_input_open_memory(text, size, &input) != IMK_OK)
         status = imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     if (status == IMK_OK)
-        status = make_reader(input, NULL, settings, reader, error);
+        status = make_reader(input, NULL, settings, &made, error);
     if (status == IMK_OK) {
-        (*reader)->memory = text;
-        (*reader)->memory_size = size;
+        made->memory = text;
+        made->memory_size = size;
     }
-    return status;
+    return give(made, status, reader);
 }
 
 imk_status imki_log_rewind(imk_log_reader *reader, imk_error *error)
@@ -131,6 +237,7 @@ void imk_log_close(imk_log_reader *reader)
             reader->codec->close(reader);
         imki_log_text_stop(&reader->text);
         free(reader->state);
+        free(reader->streams);
         free(reader->labels);
         free(reader);
     }
@@ -162,7 +269,9 @@ const char *imk_log_label(const imk_log_reader *reader, size_t index)
 void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint64_t *size)
 {
     const imki_log_text *text = &reader->text;
-    if (text->buffer) {
+    if (reader->codec->progress) {
+        reader->codec->progress(reader, done, size);
+    } else if (text->buffer) {
         const uint64_t consumed = text->taken + (uint64_t)(text->next - text->base);
         const uint64_t fetched = text->taken + (uint64_t)(text->end - text->base);
         imki_input_progress(text->input, done, size);
@@ -263,12 +372,36 @@ imk_status imk_log_read(imk_log_reader *reader, size_t max_rows, double *const *
     return done > 0 || reader->rows > 0 ? IMK_OK : imki_log_part_empty(reader, error);
 }
 
+imk_status imk_log_seek(imk_log_reader *reader, double fraction, imk_error *error)
+{
+    if (!reader->codec->seek || !(fraction >= 0 && fraction <= 1)) {
+        char found[96];
+        snprintf(found, sizeof found, "a log of the format %.40s is read from its beginning",
+                 reader->format->title);
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", found, "");
+    }
+    const double origin = reader->times.findings.time_origin;
+    const imk_status status = reader->codec->seek(reader, fraction, error);
+    if (status != IMK_OK)
+        return status;
+    imki_record_times_start(&reader->times, reader->rate > 0.0 ? 1.0 / reader->rate : 0.0);
+    reader->times.findings.time_origin = origin;
+    reader->last_time = (double)NAN;
+    reader->rows = reader->not_finite = reader->first_not_finite = 0;
+    reader->damaged = reader->first_damaged = 0;
+    reader->failed = reader->cut_short = false;
+    return IMK_OK;
+}
+
 imk_log_findings imk_log_findings_get(const imk_log_reader *reader)
 {
     imk_log_findings found = imki_record_times_findings(&reader->times);
     found.rows = reader->rows;
     found.not_finite = reader->not_finite;
     found.first_not_finite = reader->first_not_finite;
+    found.damaged = reader->damaged;
+    found.first_damaged = reader->first_damaged;
+    found.cut_short = reader->cut_short;
     if (reader->layout.time_column < 0 && reader->rows > 0)
         found.last_time = (double)(reader->rows - 1) / reader->rate;
     return found;

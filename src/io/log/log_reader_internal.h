@@ -79,7 +79,15 @@ struct imk_log_reader {
     imki_log_layout_read layout;
     const imk_log_format *format;
     const imki_log_codec *codec;
-    void *state;        /* of the format; from malloc() */
+    void *state; /* of the format; from malloc() */
+    /* The sensors in the log, those that are readable first. */
+    imk_log_stream *streams;
+    size_t stream_count, stream_room;
+    size_t stream;        /* the one that is read */
+    double origin_before; /* [s] that the format itself subtracted from the times */
+    /* Met by the format: rows, messages or blocks that are left out; the end within one. */
+    size_t damaged, first_damaged;
+    bool cut_short;
     double rate;        /* [Hz]; 0: from the times */
     double time_origin; /* in the unit of the file */
     double last_time;   /* [s] */
@@ -109,6 +117,32 @@ size_t imki_log_part_keep(imk_log_reader *reader, size_t rows, const double *tim
 /* At the end of a log without a row in the part: @return IMK_ERROR_RANGE if it has others. */
 imk_status imki_log_part_empty(const imk_log_reader *reader, imk_error *error);
 imk_status imki_log_part_check(const imk_log_settings *settings, imk_error *error);
+
+/* Note a sensor of the log, which may be one that cannot be read. The format does so in open(), in
+ * the order in which they shall be listed. @return IMK_ERROR_MEMORY */
+imk_status imki_log_stream_add(imk_log_reader *reader, const imk_log_stream *stream,
+                               imk_error *error);
+/* Choose the sensor to read, by the settings or because it is the only readable one.
+ * @param nothing  what a log lacks that has none, as in "no topic of type sensor_msgs/Imu"
+ * @param index    receives its place in the order of imki_log_stream_add()
+ * @return IMK_ERROR_NAME_UNKNOWN (none has the name of the settings; several, and none chosen),
+ *         IMK_ERROR_EMPTY (none can be read) */
+imk_status imki_log_stream_choose(imk_log_reader *reader, const char *nothing, size_t *index,
+                                  imk_error *error);
+
+/* The layout of columns that the format defines: names as in a header, "gyro_x [rad/s]"; "-" and
+ * NULL are left out. @param count  up to IMK_LOG_COLUMNS_MAX; cell i of the rows is that of
+ * names[i] */
+imk_status imki_log_layout_of(imk_log_reader *reader, size_t count, const char *const *names,
+                              imk_error *error);
+
+/* Whole stamps of a clock: what to subtract from all before they become seconds, by the rule that
+ * times beyond 1e6 s count from the first one, without loss of digits.
+ * @param per_second  stamps in a second */
+int64_t imki_log_stamp_origin(imk_log_reader *reader, int64_t first, int64_t per_second);
+
+/* A row, message or block that cannot be read is left out; `rows` of the call are before it. */
+void imki_log_damage(imk_log_reader *reader, size_t rows);
 
 /* Back to the first row: the log is opened again. */
 imk_status imki_log_rewind(imk_log_reader *reader, imk_error *error);

@@ -94,6 +94,31 @@ imk_status imki_log_text_need(imki_log_text *text, size_t size, imk_error *error
     return IMK_OK;
 }
 
+uint64_t imki_log_text_place(const imki_log_text *text)
+{
+    return text->taken + (uint64_t)(text->next - text->base);
+}
+
+imk_status imki_log_text_seek(imki_log_text *text, uint64_t place, imk_error *error)
+{
+    text->line = 1;
+    text->hold = NULL;
+    if (!text->buffer) {
+        const uint64_t size = (uint64_t)(text->end - text->base);
+        text->next = text->base + (place < size ? place : size);
+        text->lines_end = text->next;
+        find_lines_end(text, text->next);
+        return IMK_OK;
+    }
+    const imk_status status = imki_input_seek(text->input, place, error);
+    if (status != IMK_OK)
+        return status;
+    text->base = text->next = text->lines_end = text->end = text->buffer;
+    text->taken = place;
+    text->finished = false;
+    return IMK_OK;
+}
+
 imk_status imki_log_text_need_line(imki_log_text *text, imk_error *error)
 {
     while (!text->finished && text->lines_end <= text->next &&

@@ -31,6 +31,13 @@ void imki_log_text_stop(imki_log_text *text);
 /* Have `size` bytes at hand, or all that come. Moves the window: pointers into it are void. */
 imk_status imki_log_text_need(imki_log_text *text, size_t size, imk_error *error);
 
+/* Byte of the (decompressed) input at which `next` is. */
+uint64_t imki_log_text_place(const imki_log_text *text);
+
+/* Go to a byte of a plain file or of memory; lines count from 1 again. Pointers into the window are
+ * void. @return as imki_input_seek() */
+imk_status imki_log_text_seek(imki_log_text *text, uint64_t place, imk_error *error);
+
 /* Have a whole line at hand, the last one may be without newline; none at the end of the input.
  * @return IMK_ERROR_FORMAT for a line beyond IMKI_LINE_MAX, or what the input says */
 imk_status imki_log_text_need_line(imki_log_text *text, imk_error *error);

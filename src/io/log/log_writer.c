@@ -24,6 +24,7 @@ enum {
 
 typedef struct wave {
     imki_log_bytes block[BLOCKS_MAX];
+    size_t rows[BLOCKS_MAX];
     size_t count;
 } wave;
 
@@ -148,9 +149,12 @@ static void write_wave(imk_log_writer *writer, wave *done)
     for (size_t i = 0; i < done->count; i++) {
         if (done->block[i].failed)
             writer->status = IMK_ERROR_MEMORY;
+        const imki_log_bytes *block = &done->block[i];
         if (writer->status == IMK_OK)
             writer->status =
-                imk_output_file_write(writer->log.file, done->block[i].bytes, done->block[i].size);
+                writer->codec->write
+                    ? writer->codec->write(&writer->log, block->bytes, block->size, done->rows[i])
+                    : imk_output_file_write(writer->log.file, block->bytes, block->size);
     }
     done->count = 0;
 }
@@ -171,12 +175,12 @@ static void work(void *context, size_t item)
         return;
     }
     const size_t begin_row = (item - 1) * j->block_rows;
-    const size_t left = j->rows - begin_row;
+    const size_t left = j->rows - begin_row, rows = left < j->block_rows ? left : j->block_rows;
     /* In a variable of this thread's own: neighbouring blocks share cache lines. */
     imki_log_bytes *block = &writer->waves[writer->filling].block[item - 1], own = *block;
     own.size = 0;
-    writer->codec->format(&writer->log.rows, j->columns, j->first + begin_row,
-                          left < j->block_rows ? left : j->block_rows, &own);
+    writer->codec->format(&writer->log.rows, j->columns, j->first + begin_row, rows, &own);
+    writer->waves[writer->filling].rows[item - 1] = rows;
     *block = own;
 }
 
@@ -284,5 +288,9 @@ void imk_log_abandon(imk_log_writer *writer)
         return;
     imk_output_file_abandon(writer->log.file);
     imk_output_file_abandon(writer->log.companion);
+    if (writer->codec && writer->codec->discard)
+        writer->codec->discard(&writer->log);
+    else
+        free(writer->log.state);
     release(writer);
 }

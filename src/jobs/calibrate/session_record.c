@@ -5,6 +5,7 @@
 
 #include "jobs/job_internal.h"
 #include "jobs/record/even_record_internal.h"
+#include "jobs/record/record_check_internal.h"
 #include "jobs/record/record_stamps_internal.h"
 
 #include "imukit/even_record.h"
@@ -275,6 +276,8 @@ imk_status imk_calibrate_record_load(const imk_calibrate_log_settings *settings,
     record->path = name;
     record->record.means = means;
     status = imki_record_load(source, imki_job_of(job), &record->log, error);
+    if (status == IMK_OK)
+        imki_tell_damage(source, &record->loaded);
     if (status == IMK_OK && !means)
         status = settle_times(source->rate, record, &record->loaded, error);
     if (status == IMK_OK)

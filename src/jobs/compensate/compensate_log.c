@@ -312,8 +312,10 @@ static imk_status compensate(stream *s, const imk_job *job, imk_error *error)
         status = next_block(s, first, &got, job, error);
     if (status == IMK_OK && log->counts.rows == 0)
         return imki_fail(&log->findings, error, IMK_ERROR_EMPTY, "no_rows", NULL, 0, NULL);
-    if (status == IMK_OK)
+    if (status == IMK_OK) {
+        imki_tell_damage(s->source, &log->findings);
         warn(log);
+    }
     return status;
 }
 

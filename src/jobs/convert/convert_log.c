@@ -202,6 +202,8 @@ static imk_status convert(conversion *c, imk_error *error)
     }
     if (status == IMK_OK && total == 0)
         status = imki_fail(c->findings, error, IMK_ERROR_EMPTY, "no_rows", NULL, 0, NULL);
+    if (status == IMK_OK)
+        imki_tell_damage(source, c->findings);
     imki_convert_motion_warn(&c->motion);
     return status;
 }

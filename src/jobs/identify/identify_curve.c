@@ -239,8 +239,10 @@ static imk_status fit_all(imk_identify_log *log, const imk_record_source *source
 {
     used_rows used = {.count = 0};
     imk_status status = imki_record_load(source, job, &log->record.log, error);
-    if (status == IMK_OK)
+    if (status == IMK_OK) {
+        imki_tell_damage(source, &log->findings);
         status = choose(log, s, &used, error);
+    }
     for (size_t c = 0; status == IMK_OK && c < log->record.count; c++) {
         imki_arena scratch = {.allocator = job->allocator};
         status = fit_channel(log, c, s, &used, &scratch);

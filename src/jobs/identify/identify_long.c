@@ -10,6 +10,7 @@
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
 #include "jobs/record/even_record_internal.h"
+#include "jobs/record/record_check_internal.h"
 #include "jobs/record/record_repeats_internal.h"
 #include "jobs/record/record_stamps_internal.h"
 
@@ -328,6 +329,7 @@ static imk_status finish(long_record *s, bool *taken, imk_error *error)
     if (record->log.findings.doubled == 0)
         imki_repeats_tell(&s->repeats, record->log.column, record->dt, &log->findings);
     imki_coherence_tell(&s->coherence, record->log.column, &log->findings);
+    imki_tell_damage(s->source, &log->findings);
     imki_even_record_unused(record, &log->findings);
     for (size_t c = 0; c < record->count; c++)
         if (s->status[c] != IMK_OK)

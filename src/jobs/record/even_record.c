@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A whole record, and its channels equally spaced. */
 #include "even_record_internal.h"
+#include "record_check_internal.h"
 #include "record_repeats_internal.h"
 #include "record_stamps_internal.h"
 
@@ -121,6 +122,7 @@ static imk_status load_and_tell(const imk_record_source *source, imk_gap_policy 
     imk_status status = imki_record_load(source, job, &record->log, error);
     if (status != IMK_OK)
         return status;
+    imki_tell_damage(source, findings);
     imk_even_record_choose(record);
     imk_log_forget_faults(&record->log);
     status = space(source->rate, gaps, record, repeats, findings, error);

@@ -6,6 +6,7 @@
 
 #include "base/refuse_internal.h"
 #include "jobs/arena_internal.h"
+#include "jobs/job_internal.h"
 
 #include <stdio.h>
 
@@ -78,4 +79,16 @@ imk_status imki_source_findings(const imk_record_source *source, size_t rows, do
     found->rows = rows;
     imki_arena_free(&scratch);
     return IMK_OK;
+}
+
+void imki_tell_damage(const imk_record_source *source, imk_findings *findings)
+{
+    if (!source->findings)
+        return;
+    const imk_log_findings f = source->findings(source->context);
+    if (f.damaged > 0)
+        imki_find(findings, IMK_FINDING_WARNING, "damaged", NULL,
+                  IMKI_NUMBERS((double)f.damaged, (double)f.rows, (double)f.first_damaged));
+    if (f.cut_short)
+        imki_find(findings, IMK_FINDING_WARNING, "cut_short", NULL, IMKI_NUMBERS((double)f.rows));
 }

@@ -3,6 +3,7 @@
 #ifndef IMUKI_RECORD_CHECK_INTERNAL_H
 #define IMUKI_RECORD_CHECK_INTERNAL_H
 
+#include "imukit/job.h"
 #include "imukit/model.h"
 #include "imukit/record.h"
 
@@ -28,5 +29,8 @@ imk_status imki_check_unit(const imk_unit *asked, imk_dimension due, const char 
 imk_status imki_source_findings(const imk_record_source *source, size_t rows, double *const *data,
                                 const imk_allocator *allocator, imk_log_findings *found,
                                 imk_error *error);
+
+/* Tell what of a source, which is read to its end, could not be read. */
+void imki_tell_damage(const imk_record_source *source, imk_findings *findings);
 
 #endif
