@@ -16,8 +16,17 @@ target_include_directories(imukit-command PRIVATE cli)
 set_target_properties(imukit-command PROPERTIES OUTPUT_NAME imukit)
 target_link_libraries(imukit-command PRIVATE imukit-io m)
 
+# A compiler of MPI without its headers, as openmpi-bin alone is, stops find_package() with an error.
 if(IMUKIT_MPI STREQUAL AUTO)
-  find_package(MPI QUIET COMPONENTS C)
+  find_program(imukit_mpi_compiler mpicc)
+  mark_as_advanced(imukit_mpi_compiler)
+  if(imukit_mpi_compiler)
+    execute_process(COMMAND ${imukit_mpi_compiler} -fsyntax-only -include mpi.h -x c /dev/null
+                    RESULT_VARIABLE without_headers OUTPUT_QUIET ERROR_QUIET)
+  endif()
+  if(imukit_mpi_compiler AND without_headers EQUAL 0)
+    find_package(MPI QUIET COMPONENTS C)
+  endif()
 elseif(IMUKIT_MPI)
   find_package(MPI REQUIRED COMPONENTS C)
 endif()

@@ -28,6 +28,7 @@ identify)
     static raw.npy && imukit convert raw.npy raw.csv --select gyro_x,gyro_y,gyro_z
     sed -i 1d raw.csv
     ;;
+info) static static.csv ;;
 calibrate) bench ;;
 evaluate)
     bench

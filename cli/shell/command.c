@@ -58,6 +58,19 @@ const char *command_line(void)
     return line;
 }
 
+const char *command_line_as(const char *name, const char *const *without, size_t size, char *line)
+{
+    snprintf(line, size, "imukit %s", name);
+    for (int i = 2; i < kept_count; i++) {
+        bool skip = false;
+        for (const char *const *word = without; *word; word++)
+            skip = skip || strcmp(kept_arguments[i], *word) == 0;
+        if (!skip)
+            append_word(line, size, kept_arguments[i]);
+    }
+    return line;
+}
+
 void command_begin(const char *verb_name)
 {
     current_verb = verb_name;

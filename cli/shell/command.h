@@ -14,6 +14,7 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
 /* The verbs in the order of the help: NAME_verb of each is in a file of its own. */
 #define COMMAND_VERBS(VERB)                                                                        \
+    VERB(info)                                                                                     \
     VERB(identify)                                                                                 \
     VERB(calibrate)                                                                                \
     VERB(evaluate)                                                                                 \
@@ -39,6 +40,8 @@ void command_begin(const char *verb_name);
 /* The command line as it can be typed again; kept by command_line_keep(). */
 void command_line_keep(int argument_count, char **arguments);
 const char *command_line(void);
+/* The same with another verb and without these flags (NULL behind the last). @return `line` */
+const char *command_line_as(const char *name, const char *const *without, size_t size, char *line);
 
 /* "imukit allan: <message>" on standard error. Return the exit code, for `return failed(…)`. */
 int command_failed(const char *format, ...) __attribute__((format(printf, 1, 2)));

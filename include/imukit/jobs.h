@@ -20,6 +20,7 @@
 #include "imukit/identify_curve.h"
 #include "imukit/identify_log.h"
 #include "imukit/identify_several.h"
+#include "imukit/info_log.h"
 #include "imukit/job.h"
 #include "imukit/navigate_log.h"
 #include "imukit/physics_log.h"

@@ -115,10 +115,15 @@ IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settin
  *  are left aside. Only what stands at the beginning, at the end and in an index of the file is
  * read.
  *  @param stream  receives up to `most`, those that can be read first
- *  @param count   receives their number, which may be above `most`
+ *  @param count   receives their number, which may be above `most`; 0: the log has none of its own
+ *  @param format  receives the format of the log
  *  @return errors of imk_log_open(), but for a log in which there is nothing that can be read */
 IMK_API imk_status imk_log_streams(const char *path, const imk_log_settings *settings, size_t most,
-                                   imk_log_stream *stream, size_t *count, imk_error *error);
+                                   imk_log_stream *stream, size_t *count,
+                                   const imk_log_format **format, imk_error *error);
+/** The same of a log that is open. @return their number */
+IMK_API size_t imk_log_stream_list(const imk_log_reader *reader, size_t most,
+                                   imk_log_stream *stream);
 
 /** The sensor that is read. */
 IMK_API const imk_log_stream *imk_log_stream_get(const imk_log_reader *reader);

@@ -98,6 +98,9 @@ typedef struct imk_record_source {
     /** Go back to the first row. A job reads a source to its end, so it has to be rewound before
      *  another job reads it. */
     imk_status (*rewind)(void *context, imk_error *error);
+    /** Go to about this fraction of the record, 0 … 1; counts and times begin anew. For a look at
+     *  parts of a long record. May be NULL. */
+    imk_status (*seek)(void *context, double fraction, imk_error *error);
     /** Counts and times of the rows read so far. */
     imk_log_findings (*findings)(void *context);
     /** How much was read, and the total (0: not known), both in the same arbitrary measure. */

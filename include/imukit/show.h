@@ -13,6 +13,8 @@
 #include "imukit/evaluate_sheet.h"
 #include "imukit/grade_position.h"
 #include "imukit/identify_several.h"
+#include "imukit/info_log.h"
+#include "imukit/log.h"
 #include "imukit/navigate_log.h"
 #include "imukit/physics_log.h"
 #include "imukit/record_plan.h"
@@ -23,6 +25,19 @@ IMK_BEGIN_C
 
 /** Show Allan deviations: a table for each statistic and kind of sensor, and a figure. */
 IMK_API void imk_show_allan_log(const imk_allan_log *allan, const char *name, imk_result *result);
+
+/** What of a log is not in its rows. */
+typedef struct imk_info_file {
+    const char *format;           /**< title of its format */
+    size_t stream_count;          /**< sensors in it */
+    const imk_log_stream *stream; /**< `stream_count` of them */
+    const imk_log_stream *chosen; /**< the one whose rows were read; NULL: none was */
+} imk_info_file;
+/** Show what is in a log: its sensors, times, columns and motion.
+ *  @param info  NULL: no rows were read
+ *  @param next  command to run next; NULL: none is suggested */
+IMK_API void imk_show_info_log(const imk_info_log *info, const imk_info_file *file,
+                               const char *name, const char *next, imk_result *result);
 
 /** Show densities, lines and noise parameters: a table for each kind of sensor, and a figure. */
 IMK_API void imk_show_spectrum_log(const imk_spectrum_log *spectrum, const char *name,

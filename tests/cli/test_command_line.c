@@ -176,6 +176,7 @@ static void test_whole_numbers(void **state)
         {"convert x.csv y.csv", "instance", "0", "999"},
         {"evaluate x.csv", "instance", "0", "999"},
         {"identify x.csv", "instance", "0", "999"},
+        {"info x.csv", "instance", "0", "999"},
         {"navigate x.csv", "instance", "0", "999"},
         {"spectrum x.csv", "instance", "0", "999"},
     };
@@ -212,7 +213,7 @@ static void test_whole_numbers(void **state)
     }
     /* No option was forgotten. */
     assert_int_equal(run("for v in allan calibrate compensate convert devices drift evaluate grade "
-                         "identify merge navigate physics simulate spectrum; do $I $v --help; done "
+                         "identify info merge navigate physics simulate spectrum; do $I $v --help; done "
                          "| grep -c -e '--[a-z-]* N  *[A-Za-z]' -e '--[a-z-]* N$'"),
                      0);
     assert_int_equal(atoi(out), sizeof options / sizeof options[0]);

@@ -205,6 +205,7 @@ imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *set
             return imk_error_set(error, IMK_ERROR_UNIT_MISSING, "", column->name, k->due);
         unit = (imki_log_piece){setting, setting + strlen(setting)};
         field = k->option;
+        column->unit_origin = IMK_UNIT_OF_SETTINGS;
     }
     const imk_status status = imk_unit_parse(unit.begin, unit.end, &column->unit, error);
     if (status != IMK_OK) {

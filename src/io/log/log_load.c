@@ -17,6 +17,11 @@ static imk_status rewind_rows(void *context, imk_error *error)
     return imki_log_rewind(context, error);
 }
 
+static imk_status seek_row(void *context, double fraction, imk_error *error)
+{
+    return imk_log_seek(context, fraction, error);
+}
+
 static imk_log_findings findings_of(void *context)
 {
     return imk_log_findings_get(context);
@@ -40,6 +45,7 @@ imk_record_source imk_log_source(imk_log_reader *reader)
                                .rate = reader->rate,
                                .read = read_rows,
                                .rewind = rewind_rows,
+                               .seek = seek_row,
                                .findings = findings_of,
                                .progress = progress_of,
                                .label = label_of};

@@ -86,6 +86,11 @@ static imk_status open_reader(imk_log_reader *reader, imki_input *input, imk_err
     status = find_format(reader, input, error);
     if (status == IMK_OK)
         status = reader->codec->open(reader, error);
+    if (status == IMK_OK && reader->stream_count == 0 &&
+        (reader->settings.topic || reader->settings.instance > 0))
+        status = imk_error_set(error, IMK_ERROR_NAME_UNKNOWN, "topic",
+                               "the log holds one sensor, which has no name",
+                               "leave --topic and --instance out");
     if (status != IMK_OK)
         return status;
     for (size_t i = 0; i < reader->layout.column_count && reader->codec->defines_units; i++)
@@ -158,7 +163,8 @@ imk_status imk_log_open(const char *path, const imk_log_settings *settings, imk_
 }
 
 imk_status imk_log_streams(const char *path, const imk_log_settings *settings, size_t most,
-                           imk_log_stream *stream, size_t *count, imk_error *error)
+                           imk_log_stream *stream, size_t *count, const imk_log_format **format,
+                           imk_error *error)
 {
     const imk_log_settings usual = imk_log_default();
     imk_log_settings any = settings ? *settings : usual;
@@ -171,14 +177,18 @@ imk_status imk_log_streams(const char *path, const imk_log_settings *settings, s
         (status == IMK_ERROR_NAME_UNKNOWN || status == IMK_ERROR_EMPTY))
         status = IMK_OK;
     if (status == IMK_OK) {
-        *count = made->stream_count > 0 ? made->stream_count : 1;
-        for (size_t i = 0; i < made->stream_count && i < most; i++)
-            stream[i] = made->streams[i];
-        if (made->stream_count == 0 && most > 0)
-            stream[0] = *imk_log_stream_get(made);
+        *count = imk_log_stream_list(made, most, stream);
+        *format = made->format;
     }
     imk_log_close(made);
     return status;
+}
+
+size_t imk_log_stream_list(const imk_log_reader *reader, size_t most, imk_log_stream *stream)
+{
+    for (size_t i = 0; i < reader->stream_count && i < most; i++)
+        stream[i] = reader->streams[i];
+    return reader->stream_count;
 }
 
 const imk_log_stream *imk_log_stream_get(const imk_log_reader *reader)

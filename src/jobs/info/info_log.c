@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What is in a record: all of a short one; of a long one its beginning, places within, and its end.
+ */
+#include "info_log_internal.h"
+
+#include "jobs/arena_internal.h"
+#include "jobs/job_internal.h"
+#include "jobs/record/record_check_internal.h"
+
+#include <math.h>
+
+enum {
+    BLOCK_ROWS = 256,
+    FIRST_ROWS = 1 << 16, /* at the beginning */
+    PLACE_ROWS = 1 << 13, /* at each place */
+    PLACES = 12
+};
+/* In the measure of the source's progress, which are bytes of files. */
+static const uint64_t short_record = 32u << 20; /* read as a whole */
+static const uint64_t first_most = 16u << 20, place_most = 2u << 20, end_least = 1u << 20;
+
+static const uint32_t settings_cookie = 0x494E4631; /* "INF1" */
+
+imk_info_log_settings imk_info_log_default(void)
+{
+    return (imk_info_log_settings){.cookie = settings_cookie};
+}
+
+void imk_info_log_free(imk_info_log *result)
+{
+    if (result) {
+        const imk_allocator allocator = result->allocator;
+        imki_resize(&allocator, result, 0);
+    }
+}
+
+typedef struct look {
+    const imk_record_source *source;
+    const imk_job *job;
+    imk_info_log *info;
+    imki_info_rows rows;
+    double *column[IMK_LOG_COLUMNS_MAX];
+    double *scratch, *rests;
+    int time;
+    uint64_t size;   /* of the record, in the measure of its progress; 0: not known */
+    double row_size; /* in it */
+    bool over;       /* the end was met */
+    bool ended;      /* rows at the end were read, behind others */
+    /* Sums over the places. */
+    double jitter_squares, steps, interval;
+} look;
+
+static uint64_t progress_of(look *l)
+{
+    uint64_t done = 0, size = 0;
+    if (l->source->progress)
+        l->source->progress(l->source->context, &done, &size);
+    l->size = size;
+    return done;
+}
+
+static bool take_memory(look *l, imki_arena *arena)
+{
+    imki_info_rows *r = &l->rows;
+    for (size_t c = 0; c < l->info->channel_count; c++) {
+        l->column[c] = imki_arena_room(arena, BLOCK_ROWS * sizeof(double));
+        r->sample[c] = imki_arena_room(arena, IMKI_INFO_SAMPLE * sizeof(double));
+    }
+    r->window = imki_arena_room(arena, IMKI_INFO_WINDOWS * sizeof *r->window);
+    l->scratch = imki_arena_room(arena, IMKI_INFO_SAMPLE * sizeof(double));
+    l->rests = imki_arena_room(arena, IMKI_INFO_WINDOWS * sizeof(double));
+    return !arena->failed;
+}
+
+static void find_columns(look *l)
+{
+    imk_info_log *info = l->info;
+    imki_info_rows *r = &l->rows;
+    const imk_dimension count = imk_unit_of("count").dimension;
+    r->info = info;
+    r->stride = 1;
+    r->window_rows = IMKI_INFO_WINDOW_ROWS;
+    l->time = imk_record_find(l->source, IMK_QUANTITY_TIME, -1);
+    info->channel_count = l->source->column_count;
+    for (size_t c = 0; c < info->channel_count; c++)
+        info->channel[c].column = l->source->columns[c];
+    for (int a = 0; a < IMKI_INFO_AXES; a++) {
+        r->axis[a] = imk_record_find(
+            l->source, a < 3 ? IMK_QUANTITY_ANGULAR_RATE : IMK_QUANTITY_SPECIFIC_FORCE, a % 3);
+        if (r->axis[a] >= 0)
+            r->counts[a / 3] =
+                imk_dimension_equal(info->channel[r->axis[a]].column.unit.dimension, count);
+    }
+}
+
+/* After the first block: how many rows are a second. */
+static void find_window(look *l)
+{
+    const imk_log_findings f = l->source->findings ? l->source->findings(l->source->context)
+                                                   : (imk_log_findings){.interval = 0};
+    l->interval = f.interval;
+    if (f.interval > 0 && 1 / f.interval > IMKI_INFO_WINDOW_ROWS)
+        l->rows.window_rows = (size_t)fmin(1 / f.interval + 0.5, 1e5);
+}
+
+/* Read on, up to so many rows and, beyond the first block, so much of the record. */
+static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool first,
+                             imk_error *error)
+{
+    const uint64_t begin = progress_of(l);
+    imk_status status = IMK_OK;
+    imki_info_rows_begin(&l->rows);
+    for (size_t rows = 0, got = 1; rows < rows_most && !l->over; rows += got) {
+        status = l->source->read(l->source->context, BLOCK_ROWS, l->column, &got, error);
+        if (status != IMK_OK)
+            break;
+        l->over = got == 0;
+        if (first && rows == 0)
+            find_window(l);
+        if (l->time >= 0 && got > 0) {
+            if (l->info->rows_read == 0)
+                l->info->first_time = l->column[l->time][0];
+            l->info->last_time = l->column[l->time][got - 1];
+        }
+        imki_info_rows_add(&l->rows, got, l->column);
+        const uint64_t at = progress_of(l);
+        status = imki_job_progress(l->job, "looking", "B", at, l->size, error);
+        if (status != IMK_OK || (at > begin && at - begin > size_most))
+            break;
+    }
+    l->info->places++;
+    return status;
+}
+
+/* Counts of the place that was read. */
+static void take_findings(look *l, size_t rows_before)
+{
+    imk_info_log *info = l->info;
+    if (!l->source->findings)
+        return;
+    const imk_log_findings f = l->source->findings(l->source->context);
+    const double steps = (double)(info->rows_read - rows_before);
+    info->time_origin = f.time_origin;
+    info->gaps += f.gaps;
+    info->missing += f.missing;
+    info->repeats += f.repeats;
+    info->reversals += f.reversals;
+    info->not_finite += f.not_finite;
+    info->damaged += f.damaged;
+    info->cut_short = f.cut_short;
+    if (!(steps > 0))
+        return;
+    if (f.interval > 0 && l->steps == 0)
+        l->interval = f.interval;
+    l->steps += steps;
+    l->jitter_squares += steps * f.jitter * f.jitter;
+}
+
+/* The end: so far before it that it is met, at first one megabyte. Where a sensor is rare among
+ * others there may be no row in that. */
+static imk_status read_end(look *l, imk_error *error)
+{
+    imk_status status = IMK_OK;
+    for (uint64_t back = end_least; status == IMK_OK && back <= 16 * end_least; back *= 4) {
+        const size_t before = l->info->rows_read;
+        const double fraction = 1 - (double)back / (double)l->size;
+        if (l->source->seek(l->source->context, fraction > 0 ? fraction : 0, error) != IMK_OK)
+            return IMK_OK;
+        l->over = false;
+        status = read_place(l, SIZE_MAX, UINT64_MAX, false, error);
+        take_findings(l, before);
+        l->ended = l->info->rows_read > before;
+        if (l->ended)
+            break;
+    }
+    return status;
+}
+
+static imk_status read_places(look *l, imk_error *error)
+{
+    imk_status status = IMK_OK;
+    for (int k = 1; k <= PLACES && status == IMK_OK; k++) {
+        const size_t before = l->info->rows_read;
+        if (l->source->seek(l->source->context, (double)k / (PLACES + 1), error) != IMK_OK)
+            return IMK_OK; /* what was read has to do */
+        status = read_place(l, PLACE_ROWS, place_most, false, error);
+        l->over = false;
+        take_findings(l, before);
+    }
+    return status == IMK_OK ? read_end(l, error) : status;
+}
+
+static void estimate_rows(look *l)
+{
+    imk_info_log *info = l->info;
+    const bool timed = l->time >= 0;
+    info->rows = info->rows_read;
+    info->rows_from = IMK_INFO_READ;
+    if (!info->whole) {
+        info->rows_from = IMK_INFO_BEGINNING;
+        if (info->settings.rows > 0) {
+            info->rows = info->settings.rows;
+            info->rows_from = IMK_INFO_INDEX;
+        } else if (l->size > 0 && l->row_size > 0) {
+            info->rows = (uint64_t)((double)l->size / l->row_size + 0.5);
+            info->rows_from = IMK_INFO_SIZE;
+        }
+    }
+    info->duration =
+        timed ? info->last_time - info->first_time : (double)(info->rows - 1) * l->interval;
+    info->duration_from = info->whole ? IMK_INFO_READ
+                          : !timed    ? info->rows_from
+                          : l->ended  ? IMK_INFO_ENDS
+                                      : IMK_INFO_BEGINNING;
+    if (timed && info->duration_from == IMK_INFO_BEGINNING &&
+        info->rows_from != IMK_INFO_BEGINNING) {
+        info->duration = (double)(info->rows - 1) * l->interval;
+        info->duration_from = info->rows_from;
+        info->last_time = (double)NAN;
+    }
+}
+
+static imk_status run(look *l, imk_error *error)
+{
+    imk_info_log *info = l->info;
+    const bool full = info->settings.full;
+    const uint64_t begin = progress_of(l);
+    const bool all = full || (l->size > 0 && l->size <= short_record);
+    imk_status status =
+        read_place(l, all ? SIZE_MAX : FIRST_ROWS, all ? UINT64_MAX : first_most, true, error);
+    take_findings(l, 0);
+    const uint64_t at = progress_of(l);
+    info->whole = l->over;
+    if (info->rows_read > 0 && at > begin)
+        l->row_size = (double)(at - begin) / (double)info->rows_read;
+    if (status == IMK_OK && !info->whole && l->source->seek && l->size > 0)
+        status = read_places(l, error);
+    if (info->rows_read == 0)
+        return status != IMK_OK
+                   ? status
+                   : imki_fail(&info->findings, error, IMK_ERROR_EMPTY, "no_rows", NULL, 0, NULL);
+    info->interval = l->interval;
+    info->jitter = l->steps > 0 ? sqrt(l->jitter_squares / l->steps) : 0;
+    estimate_rows(l);
+    imki_info_rows_end(&l->rows, l->scratch);
+    imki_info_motion(&l->rows, l->rests, l->scratch);
+    return status;
+}
+
+imk_status imk_info_log_run(const imk_record_source *source, const imk_info_log_settings *settings,
+                            const imk_job *job, imk_info_log **result, imk_error *error)
+{
+    imk_status status =
+        imki_check_call(result, settings, settings_cookie, "imk_info_log_default()", error);
+    if (!result)
+        return status;
+    *result = NULL;
+    job = imki_job_of(job);
+    if (status == IMK_OK)
+        status = imki_check_source(source, error);
+    imk_info_log *made = imki_result_new(job, sizeof *made, &status, error);
+    if (!made)
+        return status;
+    made->allocator = job->allocator;
+    made->settings = *settings;
+    made->first_time = made->last_time = (double)NAN;
+    *result = made;
+    imki_arena arena = {.allocator = job->allocator};
+    look *l = imki_arena_take(&arena, sizeof *l);
+    if (l) {
+        *l = (look){.source = source, .job = job, .info = made};
+        find_columns(l);
+    }
+    status = l && take_memory(l, &arena) ? run(l, error)
+                                         : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    imki_arena_free(&arena);
+    return status;
+}

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit info: what it prints of logs of several formats, and the commands it suggests. */
+#include "run_command.h"
+
+static json_t *info_json(const char *line)
+{
+    json_error_t error;
+    if (run(line) != 0) {
+        print_error("%s\n%s", line, err);
+        fail();
+    }
+    json_t *root = json_loads(out, 0, &error);
+    assert_non_null(root);
+    return root;
+}
+
+static json_t *record_of(json_t *root)
+{
+    json_t *record = json_object_get(json_object_get(root, "result"), "record");
+    assert_true(json_is_object(record));
+    return record;
+}
+
+static double value_of(json_t *object, const char *key)
+{
+    return json_number_value(json_object_get(json_object_get(object, key), "value"));
+}
+
+static void test_a_log_at_rest(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I simulate AHRS --rate 100Hz --duration 2min --seed 1 -o rest.csv"), 0);
+    json_t *root = info_json("$I info rest.csv --json"), *record = record_of(root);
+    assert_int_equal(json_integer_value(json_object_get(record, "rows")), 12000);
+    assert_string_equal(json_string_value(json_object_get(record, "motion")), "at_rest");
+    CHECK_CLOSE(value_of(record, "duration"), 119.99, 1e-9);
+    CHECK_CLOSE(value_of(record, "interval"), 0.01, 1e-9);
+    json_t *gyro = json_array_get(json_object_get(record, "columns"), 1);
+    assert_string_equal(json_string_value(json_object_get(gyro, "name")), "gyro_x");
+    assert_string_equal(json_string_value(json_object_get(gyro, "unit")), "deg/s");
+    assert_string_equal(json_string_value(json_object_get(gyro, "unit_from")), "header");
+    /* The preset's resolution is 0.005 deg/s. */
+    CHECK_RELATIVE(value_of(gyro, "step"), 0.005 * 3.14159265358979 / 180, 1e-6);
+    const char *next = json_string_value(json_object_get(json_object_get(root, "result"), "next"));
+    assert_string_equal(next, "imukit identify rest.csv -o model.yaml");
+    json_decref(root);
+    assert_int_equal(run("$I info rest.csv"), 0);
+    check_contains(out, "rest.csv: CSV\n", "text");
+    check_contains(out, "Next: imukit identify rest.csv -o model.yaml\n", "text");
+    check_contains(out, "faults    none\n", "text");
+    /* The command that it suggests runs. */
+    assert_int_equal(run("$I identify rest.csv -o model.yaml"), 0);
+}
+
+/* Options given for reading are in the suggestion; a stream is gone, so none is made. */
+static void test_suggestions(void **state)
+{
+    (void)state;
+    assert_int_equal(run("sed '1s/ .deg.s.//g' rest.csv >'no unit.csv'"), 0);
+    assert_int_equal(run("$I info 'no unit.csv' --gyro-unit deg/s"), 0);
+    check_contains(out, "Next: imukit identify 'no unit.csv' --gyro-unit deg/s -o model.yaml\n",
+                   "text");
+    check_contains(out, "gyro_x   deg/s  option", "origin");
+    assert_int_equal(run("cat rest.csv | $I info -"), 0);
+    check_contains(out, "The sensor is at rest.\n", "pipe");
+    assert_null(strstr(out, "Next:"));
+}
+
+static void test_a_log_that_moves(void **state)
+{
+    (void)state;
+    assert_int_equal(run("printf 'imukit_motion: 1\\nsteps:\\n  - hold 2 s\\n  - accelerate to 15 "
+                         "m/s at 2 m/s^2\\n  - turn right 90 deg at 15 deg/s\\n  - stop at 3 "
+                         "m/s^2\\n' >drive.yaml"),
+                     0);
+    assert_int_equal(run("$I simulate AHRS --motion drive.yaml --rate 100Hz -o drive.csv"), 0);
+    assert_int_equal(run("$I info drive.csv"), 0);
+    check_contains(out, "The sensor is moved: it rests ", "motion");
+    assert_null(strstr(out, "Next:"));
+}
+
+/* 50 MB: read in places, and from the beginning where it is compressed. */
+static void test_a_long_log(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I simulate AHRS --rate 100Hz --duration 10000s --seed 2 -o long.npy"),
+                     0);
+    json_t *root = info_json("$I info long.npy --json"), *record = record_of(root);
+    assert_true(json_is_false(json_object_get(record, "whole")));
+    assert_string_equal(json_string_value(json_object_get(record, "duration_from")), "ends");
+    CHECK_CLOSE(value_of(record, "duration"), 9999.99, 1e-6);
+    CHECK_RELATIVE((double)json_integer_value(json_object_get(record, "rows")), 1e6, 1e-3);
+    json_decref(root);
+    root = info_json("$I info long.npy --full --json");
+    record = record_of(root);
+    assert_true(json_is_true(json_object_get(record, "whole")));
+    assert_int_equal(json_integer_value(json_object_get(record, "rows_read")), 1000000);
+    json_decref(root);
+}
+
+static void test_refusals(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I info"), 2);
+    assert_int_equal(run("$I info none.csv"), 1);
+    check_contains(err, "none.csv", "missing");
+    assert_int_equal(run("printf '' >empty.csv; $I info empty.csv"), 1);
+    assert_int_equal(run("$I info rest.csv --topic imu"), 1);
+    check_contains(err, "the log holds one sensor, which has no name", "topic");
+    assert_int_equal(run("$I info rest.csv --format nonesuch"), 1);
+    check_contains(err, "no format is called \"nonesuch\"", "format");
+    /* rest.csv, model.yaml, no unit.csv, drive.yaml, drive.csv, long.npy and its names, empty.csv */
+    assert_int_equal(sweep(), 8);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_log_at_rest),    cmocka_unit_test(test_suggestions),
+        cmocka_unit_test(test_a_log_that_moves), cmocka_unit_test(test_a_long_log),
+        cmocka_unit_test(test_refusals),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
