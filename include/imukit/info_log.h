@@ -2,7 +2,7 @@
 /** @file info_log.h
  *  The job of `imukit info`: what is in a record. Columns, rate, gaps, ranges, steps, clipping, and
  *  whether the sensor is at rest. A long record is looked at in places; what follows from these
- * only is marked as an estimate. */
+ *  only is marked as an estimate. */
 #ifndef IMUKIT_INFO_LOG_H
 #define IMUKIT_INFO_LOG_H
 
@@ -82,7 +82,7 @@ typedef struct imk_info_log {
  *  cannot be read at other places (a pipe, compressed) is read from its beginning.
  *  @param job  NULL: no progress, the memory of the C library
  *  @return errors of the source (with the result of what was read before); IMK_ERROR_EMPTY (no
- * row), _MEMORY, _UNINITIALISED */
+ *          row), _MEMORY, _UNINITIALISED */
 IMK_API imk_status imk_info_log_run(const imk_record_source *source,
                                     const imk_info_log_settings *settings, const imk_job *job,
                                     imk_info_log **result, imk_error *error);

@@ -79,19 +79,6 @@ typedef struct imk_log_settings {
 /** Everything from the header of the file. */
 IMK_API imk_log_settings imk_log_default(void);
 
-/** A sensor in a log that may hold several: a topic of a bag, messages of one kind and instance of
- * a flight log. */
-typedef struct imk_log_stream {
-    char name[96];     /**< "/imu/data", "sensor_accel"; "" in formats that hold one sensor only */
-    char kind[64];     /**< type of the messages: "sensor_msgs/msg/Imu" */
-    int instance;      /**< of those of the same name, from 0; -1: names are different */
-    bool readable;     /**< it holds gyros or accelerometers that imk_log_open() reads */
-    bool estimated;    /**< `samples` is an estimate */
-    uint64_t samples;  /**< 0: not known */
-    double begin, end; /**< times of its first and last sample [s], of the clock of the log; NaN:
-                          not known */
-} imk_log_stream;
-
 typedef struct imk_log_reader imk_log_reader;
 
 /** Open a log and read its header. `path` may be "-" (standard input), a pipe or a compressed file.
@@ -106,14 +93,14 @@ typedef struct imk_log_reader imk_log_reader;
  *  The message of every error ends with the exact option to add.
  *  @return IMK_ERROR_OPEN, _READ, _WRITE (of the temporary copy), _EMPTY, _FORMAT, _COMPRESSED,
  *          _COLUMN, _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, _NAME_UNKNOWN (the
- * format; the topic, or several and none chosen), _UNSUPPORTED (a pipe, of a format that needs a
- *          file; a format that is only known by name), … */
+ *          format; the topic, or several and none chosen), _UNSUPPORTED (a pipe, of a format that
+ *          needs a file; a format that is only known by name), … */
 IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settings,
                                 imk_log_reader **reader, imk_error *error);
 
 /** The sensors of a log, without choosing one: as imk_log_open(), but settings.topic and .instance
  *  are left aside. Only what stands at the beginning, at the end and in an index of the file is
- * read.
+ *  read.
  *  @param stream  receives up to `most`, those that can be read first
  *  @param count   receives their number, which may be above `most`; 0: the log has none of its own
  *  @param format  receives the format of the log

@@ -48,6 +48,19 @@ typedef struct imk_log_column {
     imk_unit_origin unit_origin;
 } imk_log_column;
 
+/** A sensor in a log that may hold several: a topic of a bag, messages of one kind and instance of
+ * a flight log. */
+typedef struct imk_log_stream {
+    char name[96];     /**< "/imu/data", "sensor_accel"; "" in formats that hold one sensor only */
+    char kind[64];     /**< type of the messages: "sensor_msgs/msg/Imu" */
+    int instance;      /**< of those of the same name, from 0; -1: names are different */
+    bool readable;     /**< it holds gyros or accelerometers that imk_log_open() reads */
+    bool estimated;    /**< `samples` is an estimate */
+    uint64_t samples;  /**< 0: not known */
+    double begin, end; /**< times of its first and last sample [s], of the clock of the log; NaN:
+                          not known */
+} imk_log_stream;
+
 /** Counts and times of the rows read so far. Rows count from 1, the first data row.
  *
  *  The interval is the median of the first 4096 positive time steps (of all, when there are fewer),

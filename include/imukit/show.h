@@ -14,7 +14,6 @@
 #include "imukit/grade_position.h"
 #include "imukit/identify_several.h"
 #include "imukit/info_log.h"
-#include "imukit/log.h"
 #include "imukit/navigate_log.h"
 #include "imukit/physics_log.h"
 #include "imukit/record_plan.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Every verb reads and writes through pipes what it reads and writes as files, to the byte. */
-#include "run_command.h"
+#include "cli/run_command.h"
 
 /* A file, and a line that reads it where @ stands. */
 static const struct {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Every verb that reads a log tells of columns with a wrong name, and of no others. */
-#include "run_command.h"
+#include "cli/run_command.h"
 
 #define POSES "-p multiposition --position '48.1 deg, 11.6 deg, 520 m'"
 

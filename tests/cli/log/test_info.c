@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit info: what it prints of logs of several formats, and the commands it suggests. */
-#include "run_command.h"
+#include "cli/run_command.h"
 
 static json_t *info_json(const char *line)
 {
@@ -109,7 +109,7 @@ static void test_refusals(void **state)
     check_contains(err, "the log holds one sensor, which has no name", "topic");
     assert_int_equal(run("$I info rest.csv --format nonesuch"), 1);
     check_contains(err, "no format is called \"nonesuch\"", "format");
-    /* rest.csv, model.yaml, no unit.csv, drive.yaml, drive.csv, long.npy and its names, empty.csv */
+    /* rest, model, no unit, the drive and its log, long.npy and its names, empty */
     assert_int_equal(sweep(), 8);
 }
 

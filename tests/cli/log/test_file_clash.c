@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* No output replaces what the run reads, or another output, however the two are spelled. */
-#include "run_command.h"
+#include "cli/run_command.h"
 
 static int make_inputs(void **state)
 {
