@@ -21,6 +21,7 @@
 #include "imukit/calibration_plan.h"
 #include "imukit/compensate.h"
 #include "imukit/correct.h"
+#include "imukit/device_sensitivity.h"
 #include "imukit/decimal.h"
 #include "imukit/distort.h"
 #include "imukit/distributions.h"
