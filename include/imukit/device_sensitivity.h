@@ -47,10 +47,10 @@ IMK_API bool imk_device_sensitivity_of(const imk_device_sensitivity *sensitivity
  *  @param range  full scale with its unit: "2000deg/s", "24 g", "+-500 dps". NULL or blank when the
  *                part has one range only; not used for temperatures
  *  @param error  field is "device" or "range"; expected lists the ranges or widths there are, or
- * the nearest part
- *  @return IMK_ERROR_NAME_UNKNOWN (part), _UNSUPPORTED (nothing known of this kind of the part),
- *          _KEY_MISSING (the range, or the width, must be stated), _RANGE (no such range), and
- * those of imk_quantity_parse() for the range */
+ *                names the nearest part
+ *  @return IMK_ERROR_NAME_UNKNOWN (part, or its width must be stated), _UNSUPPORTED (nothing known
+ *          of this kind of the part), _KEY_MISSING (the range must be stated), _RANGE (no such
+ *          range), and what imk_quantity_parse() returns for the range */
 IMK_API imk_status imk_device_sensitivity_find(const char *part, imk_count_kind kind,
                                                const char *range,
                                                imk_device_sensitivity *sensitivity,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Names compared by their letters; and the nearest name of a list, by the distance of Damerau and Levenshtein in its restricted form
- * (optimal string alignment) [DAMERAU1964]: with d[i][j] for the first i and j letters,
+/* Names compared by their letters; and the nearest name of a list, by the distance of Damerau and
+ * Levenshtein in its restricted form (optimal string alignment) [DAMERAU1964]: with d[i][j] for the
+ * first i and j letters,
  *
  *     d[i][j] = min( d[i-1][j] + 1, d[i][j-1] + 1, d[i-1][j-1] + (a_i != b_j),
  *                    d[i-2][j-2] + 1  where a_i a_{i-1} = b_{j-1} b_j )

@@ -12,6 +12,13 @@
 /* Two texts of one range, as "24 g" and "235.3596 m/s^2", differ by a few roundings. */
 static const double same_range = 1e-9;
 
+/* Widths as they stand behind a name. */
+static const struct {
+    const char *text, *letters;
+    int bits;
+} widths[] = {{" 11-bit", "11bit", 11}, {" 16-bit", "16bit", 16}, {" 32-bit", "32bit", 32}};
+enum { WIDTHS = sizeof widths / sizeof widths[0] };
+
 typedef struct request {
     char part[64]; /* the name without a width */
     int bits;      /* 0: not stated */
@@ -68,10 +75,6 @@ static bool of_part(const request *r, const imki_sensitivity_row *row)
 /* The name without "16-bit" or the like at its end. */
 static void read_part(const char *text, request *r)
 {
-    static const struct {
-        const char *text;
-        int bits;
-    } widths[] = {{"11bit", 11}, {"16bit", 16}, {"32bit", 32}};
     char letters[sizeof r->part];
     size_t length = 0, ends[sizeof r->part];
     imki_copy_text(r->part, sizeof r->part, text);
@@ -80,9 +83,9 @@ static void read_part(const char *text, request *r)
             letters[length] = imki_lower(r->part[i]);
             ends[length++] = i;
         }
-    for (size_t i = 0; i < sizeof widths / sizeof widths[0]; i++) {
-        const size_t size = strlen(widths[i].text);
-        if (length > size && memcmp(letters + length - size, widths[i].text, size) == 0) {
+    for (size_t i = 0; i < WIDTHS; i++) {
+        const size_t size = strlen(widths[i].letters);
+        if (length > size && memcmp(letters + length - size, widths[i].letters, size) == 0) {
             r->bits = widths[i].bits;
             r->part[ends[length - size]] = '\0';
             return;
@@ -124,10 +127,8 @@ static imk_status refuse_part(const request *r, const char *part)
     char expected[sizeof r->error->expected] =
         "a part whose sensitivities are known, such as BMI088; of another part, state the "
         "sensitivity itself";
-    if (nearest < count) {
+    if (nearest < count)
         imki_copy_text(expected, sizeof expected, names[nearest]);
-        imki_append_text(expected, sizeof expected, ", or the sensitivity itself");
-    }
     return imk_error_set(r->error, IMK_ERROR_NAME_UNKNOWN, "device", part, expected);
 }
 
@@ -140,25 +141,42 @@ static imk_status refuse_kind(const request *r, const char *part)
     return imk_error_set(r->error, IMK_ERROR_UNSUPPORTED, "device", part, expected);
 }
 
-/* The ranges of the part, or its widths, each once: "one of 3 g, 6 g, 12 g, 24 g". */
-static imk_status refuse_listing(const request *r, imk_status status, bool widths,
-                                 const char *found)
+static bool has_width(const request *r, const imki_sensitivity_row *row, int bits)
+{
+    return of_part(r, row) && row->bits == bits;
+}
+
+/* The widths of the part, each once: "one of ADIS16470 16-bit, ADIS16470 32-bit". */
+static imk_status refuse_width(const request *r, const char *part)
+{
+    char list[sizeof r->error->expected] = "";
+    for (size_t w = 0; w < WIDTHS; w++)
+        for (size_t i = 0; i < imki_sensitivity_row_count; i++)
+            if (has_width(r, &imki_sensitivity_rows[i], widths[w].bits)) {
+                imki_append_text(list, sizeof list, list[0] ? ", " : "one of ");
+                imki_append_text(list, sizeof list, imki_sensitivity_rows[i].part);
+                imki_append_text(list, sizeof list, widths[w].text);
+                break;
+            }
+    return imk_error_set(r->error, IMK_ERROR_NAME_UNKNOWN, "device", part, list);
+}
+
+/* The ranges of the part, each once: "one of 3 g, 6 g, 12 g, 24 g". */
+static imk_status refuse_range(const request *r, imk_status status, const char *found)
 {
     char list[sizeof r->error->expected] = "";
     const imki_sensitivity_row *before = NULL;
     for (size_t i = 0; i < imki_sensitivity_row_count; i++) {
         const imki_sensitivity_row *row = &imki_sensitivity_rows[i];
-        if (!of_part(r, row) || (!widths && before && strcmp(before->range, row->range) == 0))
+        if (!of_part(r, row) || (before && strcmp(before->range, row->range) == 0))
             continue;
         imki_append_text(list, sizeof list, before ? ", " : "one of ");
-        imki_append_text(list, sizeof list, widths ? row->part : row->range);
-        if (widths)
-            imki_append_text(list, sizeof list, row->bits == 32 ? " 32-bit" : " 16-bit");
+        imki_append_text(list, sizeof list, row->range);
         before = row;
     }
-    if (!widths && before && !before->range[0])
-        imki_copy_text(list, sizeof list, "no range: this part has one only");
-    return imk_error_set(r->error, status, widths ? "device" : "range", found, list);
+    if (before && !before->range[0])
+        imki_copy_text(list, sizeof list, "leave it out: the part has one range");
+    return imk_error_set(r->error, status, "range", found, list);
 }
 
 /* "2000deg/s", also behind ± or +-; not a number when nothing is stated. */
@@ -221,7 +239,9 @@ imk_status imk_device_sensitivity_find(const char *part, imk_count_kind kind, co
     if (!part || (int)kind < 0 || kind >= IMK_COUNT_KINDS)
         return imk_error_set(r.error, IMK_ERROR_ARGUMENT, part ? "kind" : "device", NULL, NULL);
     read_part(part, &r);
-    imki_copy_text(r.part, sizeof r.part, name_of_rows(r.part));
+    const char *rows = name_of_rows(r.part);
+    if (rows != r.part)
+        imki_copy_text(r.part, sizeof r.part, rows);
     if (kind == IMK_COUNTS_TEMPERATURE) {
         r.range = NULL;
         r.bits = 0; /* the temperature has its own width */
@@ -236,17 +256,17 @@ imk_status imk_device_sensitivity_find(const char *part, imk_count_kind kind, co
     if (fitting(&any, (double)NAN, &index, &ranges_differ) == 0)
         return refuse_kind(&r, part);
     if (fitting(&r, (double)NAN, &index, &ranges_differ) == 0)
-        return refuse_listing(&r, IMK_ERROR_NAME_UNKNOWN, true, part);
+        return refuse_width(&r, part);
     const imk_status status = read_range(&r, &asked);
     if (status != IMK_OK)
         return status;
     const size_t count = fitting(&r, asked, &index, &ranges_differ);
     if (count == 0)
-        return refuse_listing(&r, IMK_ERROR_RANGE, false, r.range);
+        return refuse_range(&r, IMK_ERROR_RANGE, r.range);
     if (ranges_differ)
-        return refuse_listing(&r, IMK_ERROR_KEY_MISSING, false, "");
+        return refuse_range(&r, IMK_ERROR_KEY_MISSING, "");
     if (count > 1)
-        return refuse_listing(&r, IMK_ERROR_KEY_MISSING, true, part);
+        return refuse_width(&r, part);
     (void)imk_device_sensitivity_get(index, sensitivity);
     return IMK_OK;
 }

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sensitivities by range, as the sources print them; each row once from its source, and compared
- * with a second one where there is one (docs/sensitivities.md). 16-bit values of Analog Devices are
- * 2^-16 of the 32-bit ones, which the drivers state. */
+/* Sensitivities by range, as the sources print them; docs/devices.md says what was read. 16-bit
+ * values of Analog Devices are 2^-16 of the 32-bit ones, which the drivers state. */
 #include "device_sensitivity_internal.h"
 
 #define GYRO IMK_COUNTS_GYRO
 #define ACCEL IMK_COUNTS_ACCEL
 #define TEMPERATURE IMK_COUNTS_TEMPERATURE
 
-/* Typical values all. */
 #define BMI088 "data sheet BST-BMI088-DS000-19 (rev. 1.9), tables 4 and 5"
 #define BMI088_REGISTERS "data sheet BST-BMI088-DS001-13 (rev. 1.3), 5.3.7"
 #define BMI160 "data sheet BMI160 rev. 1.0 (2020-11), output signals, as copied in a report"

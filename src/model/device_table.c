@@ -192,7 +192,7 @@ const imki_device_entry imki_device_table[] = {
           "Noise and offsets of the data sheet, as of the MPU-6050: 0.005 deg/s/sqrt(Hz) and 400 "
           "ug/sqrt(Hz), one-sided; 20 deg/s, 50 mg. Instabilities of a thesis quoted in the second "
           "source, without their correlation times (500 s, 800 s). Its 0.3 deg/sqrt(h) reads the "
-          "density as two-sided; its 0.24 mg/sqrt(Hz) is not in the data sheet.",
+          "density as two-sided; its 0.24 mg/sqrt(Hz) is not that of the data sheet.",
           false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.2121, .instability = 4.6, .repeatability = 72000},
@@ -422,9 +422,9 @@ const imki_device_entry imki_device_table[] = {
           "estimator settings citing the maker's support (repository not known); data sheet "
           "as four public projects copy it",
           "0.0035 deg/s/sqrt(Hz) and 0.14 mg/sqrt(Hz); the maker's support gives the same "
-          "numbers as random walks there, so they are N. Floors are the upper limits of the "
-          "data sheet, 10 deg/h (5 to 7 typical) and 0.04 mg, divided by 0.664. A random walk "
-          "of the accelerometer bias (5e-5 m/s^3/sqrt(Hz)) is a filter's and left out.",
+          "numbers as random walks there, so they are N. Floors are the limits in the copies, "
+          "10 deg/h (two of them have 5 deg/h, too) and 0.04 mg, divided by 0.664. A random "
+          "walk of the accelerometer bias (5e-5 m/s^3/sqrt(Hz)) is a filter's and left out.",
           false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.21, .instability = 10, .is_floor = true},

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The catalogue, continued: parts by their data sheets. What was read of each, and what was left
- * out, is in docs/choose-a-sensor.md. Figures are typical unless the note says otherwise;
- * repeatability is the offset at zero that the data sheet states, scale factor its tolerance.
+ * out, is in docs/devices.md. A note says "typical" where what was read says so; repeatability is
+ * the offset at zero that the data sheet states, scale factor its tolerance.
  *
  * Bosch, TDK, ST and Analog Devices state one-sided densities: their rms noise is the density times
  * the root of the bandwidth (BMI088, ICM-42688-P, MPU-6050, MPU-9250), or the random walk beside it
@@ -36,12 +36,11 @@ const imki_device_entry imki_part_table[] = {
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.297},
      .accel = {.present = true, .white = 0.06657}},
-    {.device =
-         {"ICM-20948", "consumer MEMS",
-          "data sheet DS-000189 rev. 1.3, pages 11 and 12, as two reports copy it",
-          "Typical values. 0.015 deg/s/sqrt(Hz) and 230 ug/sqrt(Hz), taken as one-sided, as in "
-          "the ICM-42688-P of the maker.",
-          false},
+    {.device = {"ICM-20948", "consumer MEMS",
+                "data sheet DS-000189 rev. 1.3, pages 11 and 12, as two reports copy it",
+                "0.015 deg/s/sqrt(Hz) and 230 ug/sqrt(Hz), taken as one-sided, as in "
+                "the ICM-42688-P of the maker.",
+                false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.6364, .repeatability = 18000, .scale_factor = 15000},
      .accel = {.present = true, .white = 0.09569, .repeatability = 50000}},
@@ -70,20 +69,19 @@ const imki_device_entry imki_part_table[] = {
      .accel = {.present = true, .white = 0.1664, .repeatability = 50000}},
     {.device = {"MPU-9250", "consumer MEMS",
                 "figures of the data sheet as four public projects copy them (data sheet not read)",
-                "Typical values. 0.01 deg/s/sqrt(Hz), one-sided: 0.1 deg/s rms is stated with it; "
+                "0.01 deg/s/sqrt(Hz), one-sided: 0.1 deg/s rms is stated with it; "
                 "300 ug/sqrt(Hz). Offsets at zero are left out: they were not read.",
                 false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.4243},
      .accel = {.present = true, .white = 0.1248}},
-    {.device =
-         {"LSM6DSO", "consumer MEMS",
-          "data sheet DS12140 rev. 3, table 2, as FlySight's sensornoise.cpp and its notes "
-          "copy it",
-          "Typical values of the high-performance mode. 3.8 mdps/sqrt(Hz); 70 ug/sqrt(Hz) at 2 "
-          "g (75, 80 and 110 at 4, 8 and 16 g); taken as one-sided, as in the ISM330DHCX of "
-          "the maker.",
-          false},
+    {.device = {"LSM6DSO", "consumer MEMS",
+                "data sheet DS12140 rev. 3, table 2, as FlySight's sensornoise.cpp and its notes "
+                "copy it",
+                "High-performance mode: 3.8 mdps/sqrt(Hz); 70 ug/sqrt(Hz) at 2 "
+                "g (75, 80 and 110 at 4, 8 and 16 g); taken as one-sided, as in the ISM330DHCX of "
+                "the maker.",
+                false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.1612, .repeatability = 3600, .scale_factor = 10000},
      .accel = {.present = true, .white = 0.02912, .repeatability = 20000, .scale_factor = 10000}},
@@ -109,13 +107,14 @@ const imki_device_entry imki_part_table[] = {
      .gyro = {.present = true, .white = 0.34, .instability = 8, .range = 2000, .is_floor = true},
      .accel =
          {.present = true, .white = 0.04161, .instability = 13, .range = 40, .is_floor = true}},
-    {.device = {"ADIS16495-1", "tactical MEMS",
-                "data sheet of the ADIS16495 as a collection of robot parts copies it",
-                "Typical values of the version for 125 deg/s; floor divided by 0.664. The "
-                "accelerometers are left out: their noise was not read.",
-                false},
+    {.device =
+         {"ADIS16495", "tactical MEMS",
+          "data sheet of the ADIS16495 as a collection of robot parts copies it",
+          "Typical values; of which version (125, 450 or 2000 deg/s) the copy does not say. "
+          "Floor divided by 0.664. The accelerometers are left out: their noise was not read.",
+          false},
      .method = "datasheet",
-     .gyro = {.present = true, .white = 0.09, .instability = 0.8, .range = 125, .is_floor = true},
+     .gyro = {.present = true, .white = 0.09, .instability = 0.8, .is_floor = true},
      .accel = {.present = false}},
     {.device = {"HG4930", "tactical MEMS",
                 "figures of the HG4930CA51 as three public projects copy the maker's manual",

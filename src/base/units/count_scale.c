@@ -22,12 +22,12 @@ static void describe_expected(imk_dimension quantity, char *text, size_t size)
     static const struct {
         const char *unit, *text;
     } usual[] = {
-        {"rad/s",
-         "counts per angular rate like 16.4 LSB/(deg/s), or an angular rate per count like "
-         "8.75 mdps/LSB"},
-        {"m/s^2", "counts per acceleration like 2048 LSB/g, or an acceleration per count like "
-                  "0.061 mg/LSB"},
-        {"K", "counts per kelvin like 132.48 LSB/degC, or kelvins per count like 0.125 K/LSB"},
+        {"rad/s", "a number of counts per angular rate like 16.4 LSB/(deg/s), or an angular rate "
+                  "per count like 8.75 mdps/LSB"},
+        {"m/s^2", "a number of counts per acceleration like 2048 LSB/g, or an acceleration per "
+                  "count like 0.061 mg/LSB"},
+        {"K", "a number of counts per kelvin like 132.48 LSB/degC, or kelvins per count like 0.125 "
+              "K/LSB"},
     };
     text[0] = '\0';
     for (size_t i = 0; i < sizeof usual / sizeof usual[0]; i++)

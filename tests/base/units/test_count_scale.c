@@ -58,10 +58,12 @@ static void both_ways_of_writing_are_read(void **state)
 static void what_is_no_scale_is_refused_in_words(void **state)
 {
     (void)state;
-    static const char rate[] = "counts per angular rate like 16.4 LSB/(deg/s), or an angular rate "
-                               "per count like 8.75 mdps/LSB";
-    static const char force[] = "counts per acceleration like 2048 LSB/g, or an acceleration per "
-                                "count like 0.061 mg/LSB";
+    static const char rate[] =
+        "a number of counts per angular rate like 16.4 LSB/(deg/s), or an angular rate "
+        "per count like 8.75 mdps/LSB";
+    static const char force[] =
+        "a number of counts per acceleration like 2048 LSB/g, or an acceleration per "
+        "count like 0.061 mg/LSB";
     static const struct {
         const char *text, *quantity;
         imk_status status;
@@ -84,7 +86,8 @@ static void what_is_no_scale_is_refused_in_words(void **state)
         {"5 LSB^2/g", "m/s^2", IMK_ERROR_DIMENSION, NULL, force},
         {"5 LSB/gg", "m/s^2", IMK_ERROR_UNIT_UNKNOWN, "gg", NULL},
         {"5 LSB/T", "K", IMK_ERROR_DIMENSION, NULL,
-         "counts per kelvin like 132.48 LSB/degC, or kelvins per count like 0.125 K/LSB"},
+         "a number of counts per kelvin like 132.48 LSB/degC, or kelvins per count like 0.125 "
+         "K/LSB"},
         {"5 LSB/g", "m", IMK_ERROR_DIMENSION, NULL,
          "a number with a unit of LSB/(m) or the reverse"},
     };
