@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Fuzz entry point of units and quantities: what is read is written and reads back with the same
- * bits.
+/* Fuzz entry point of units, quantities and what a count is: what is read is written and reads back
+ * with the same bits; a count is read as a positive number, or refused.
  * Reads: src/base/units/units.c src/base/units/unit_table.c src/base/units/quantity.c
- * src/base/units/quantity_format.c src/base/units/dimension_table.c src/base/nearest_name.c */
+ * src/base/units/quantity_format.c src/base/units/dimension_table.c src/base/units/count_scale.c
+ * src/base/nearest_name.c */
 #include "harness.h"
 
 #include "imukit/units.h"
@@ -69,6 +70,19 @@ static void check_quantity(const char *begin, const char *end)
     require(memcmp(back_sigma, sigma, count * sizeof *sigma) == 0);
 }
 
+static void check_scale(const char *begin, const char *end)
+{
+    static const char *const quantities[] = {"rad/s", "m/s^2", "K", "m*A"};
+    for (size_t i = 0; i < sizeof quantities / sizeof quantities[0]; i++) {
+        double per_count = -1;
+        imk_error error = {.status = IMK_OK};
+        const imk_status status = imk_count_scale_parse(
+            begin, end, imk_unit_of(quantities[i]).dimension, &per_count, &error);
+        require_told(status, &error);
+        require(status == IMK_OK ? per_count > 0 && isfinite(per_count) : per_count == -1);
+    }
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char *text = malloc(size + 1);
@@ -77,6 +91,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     memcpy(text, data, size);
     check_unit(text, text + size);
     check_quantity(text, text + size);
+    check_scale(text, text + size);
     free(text);
     return 0;
 }

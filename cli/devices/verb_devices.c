@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* imukit devices: the catalogue of real devices and grade presets. */
+/* imukit devices: the catalogue of real devices and grade presets, and what a count of a part is.
+ */
 #include "shell/show.h"
 
+#include "imukit/device_sensitivity.h"
 #include "imukit/model_file.h"
+#include "imukit/names.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,30 +37,126 @@ static double headline(const imk_model *model, size_t k)
     return ((const imk_axes *)((const char *)model + headlines[k].offset))->value[0];
 }
 
-static void show_data(const imk_device *device, const imk_model *model, imk_result *result)
+/* A device of the catalogue, or a part of which only sensitivities are known. */
+typedef struct subject {
+    const char *name;
+    const imk_device *device; /* NULL: sensitivities only */
+} subject;
+
+typedef struct subjects {
+    size_t count;
+    subject *of;
+} subjects;
+
+/* What there is, or what is asked for: the subject of that name, or those with it in theirs. */
+static subjects select_subjects(const char *name)
 {
+    subjects all = {0}, chosen = {0};
+    imk_device_sensitivity row;
+    const size_t limit = imk_device_count() + imk_device_sensitivity_count();
+    all.of = command_memory(NULL, limit * sizeof *all.of);
+    for (size_t d = 0; d < imk_device_count(); d++)
+        all.of[all.count++] = (subject){imk_device_get(d)->name, imk_device_get(d)};
+    for (size_t i = 0; imk_device_sensitivity_get(i, &row); i++)
+        if (!imk_device_find(row.part) && strcmp(row.part, all.of[all.count - 1].name) != 0)
+            all.of[all.count++] = (subject){row.part, NULL};
+    if (!name)
+        return all;
+    chosen.of = command_memory(NULL, limit * sizeof *chosen.of);
+    for (size_t i = 0; i < all.count; i++)
+        if (imk_name_equal(name, all.of[i].name))
+            chosen.of[chosen.count++] = all.of[i];
+    const bool none = chosen.count == 0;
+    for (size_t i = 0; none && i < all.count; i++)
+        if (imk_name_within(name, all.of[i].name))
+            chosen.of[chosen.count++] = all.of[i];
+    free(all.of);
+    return chosen;
+}
+
+static const char *const kinds[IMK_COUNT_KINDS] = {"gyro", "accel", "temperature"};
+
+static void show_sensitivity_data(const imk_device_sensitivity *row, imk_result *result)
+{
+    static const char *const si[IMK_COUNT_KINDS] = {"rad/s", "m/s^2", "K"};
     imk_result_object(result, NULL);
-    imk_result_text(result, "name", device->name);
-    imk_result_text(result, "grade", device->grade);
-    imk_result_flag(result, "preset", device->is_preset);
-    imk_result_text(result, "source", device->source);
-    imk_result_text(result, "note", device->note);
-    imk_result_object(result, "figures");
-    for (size_t k = 0; k < HEADLINES; k++)
-        if (headline(model, k) > 0)
-            imk_result_quantity(result, headlines[k].title, headline(model, k), headlines[k].si);
-        else
-            imk_result_null(result, headlines[k].title);
-    imk_result_end(result);
+    imk_result_text(result, "part", row->part);
+    imk_result_text(result, "kind", kinds[row->kind]);
+    imk_result_count(result, "bits", row->bits);
+    if (row->range > 0)
+        imk_result_quantity(result, "range", row->range, si[row->kind]);
+    else
+        imk_result_null(result, "range");
+    imk_result_quantity(result, "per_count", row->per_count, si[row->kind]);
+    if (row->kind == IMK_COUNTS_TEMPERATURE)
+        imk_result_quantity(result, "zero", row->zero, "K");
+    else
+        imk_result_null(result, "zero");
+    imk_result_text(result, "stated", row->stated);
+    imk_result_text(result, "source", row->source);
     imk_result_end(result);
 }
 
-static void show_row(const imk_device *device, const imk_model *model, imk_table *table)
+static void show_sensitivities_data(const char *name, imk_result *result)
 {
-    imk_table_row(table, "%s\t%s", device->name,
-                  device->is_preset ? "grade preset" : device->grade);
+    imk_device_sensitivity row;
+    imk_result_array(result, "sensitivities");
+    for (size_t i = 0; imk_device_sensitivity_get(i, &row); i++)
+        if (imk_device_sensitivity_of(&row, name))
+            show_sensitivity_data(&row, result);
+    imk_result_end(result);
+}
+
+/* As comments, so that what is printed stays a model file. */
+static void show_sensitivities(const char *name, imk_result *result)
+{
+    imk_device_sensitivity row;
+    const char *source = NULL;
+    for (size_t i = 0; imk_device_sensitivity_get(i, &row); i++) {
+        if (!imk_device_sensitivity_of(&row, name))
+            continue;
+        if (!source || strcmp(row.source, source) != 0)
+            imk_result_line(result, "# sensitivities from: %s", row.source);
+        source = row.source;
+        if (row.kind == IMK_COUNTS_TEMPERATURE)
+            imk_result_line(result, "#   %s temperature: %s, %d bits, 0 at %g degC", row.part,
+                            row.stated, row.bits, row.zero - imk_unit_of("degC").offset);
+        else
+            imk_result_line(result, "#   %s %s%s%s: %s, %d bits", row.part, kinds[row.kind],
+                            row.range > 0 ? " " : "", row.range_stated, row.stated, row.bits);
+    }
+}
+
+static void show_data(const subject *s, const imk_model *model, imk_result *result)
+{
+    imk_result_object(result, NULL);
+    imk_result_text(result, "name", s->name);
+    if (s->device) {
+        imk_result_text(result, "grade", s->device->grade);
+        imk_result_flag(result, "preset", s->device->is_preset);
+        imk_result_text(result, "source", s->device->source);
+        imk_result_text(result, "note", s->device->note);
+        imk_result_object(result, "figures");
+        for (size_t k = 0; k < HEADLINES; k++)
+            if (headline(model, k) > 0)
+                imk_result_quantity(result, headlines[k].title, headline(model, k),
+                                    headlines[k].si);
+            else
+                imk_result_null(result, headlines[k].title);
+        imk_result_end(result);
+    }
+    show_sensitivities_data(s->name, result);
+    imk_result_end(result);
+}
+
+static void show_row(const subject *s, const imk_model *model, imk_table *table)
+{
+    const char *grade = !s->device             ? "sensitivities only"
+                        : s->device->is_preset ? "grade preset"
+                                               : s->device->grade;
+    imk_table_row(table, "%s\t%s", s->name, grade);
     for (size_t k = 0; k < HEADLINES; k++)
-        if (headline(model, k) > 0)
+        if (s->device && headline(model, k) > 0)
             imk_table_add(table, "%.4g", headline(model, k) / imk_unit_of(headlines[k].unit).scale);
         else
             imk_table_add(table, "-");
@@ -74,13 +174,23 @@ static imk_table *begin_table(imk_result *result)
     return table;
 }
 
-static void show_entry(const imk_device *device, const imk_model *model, imk_result *result)
+static void show_entry(const subject *s, const imk_model *model, imk_result *result)
 {
     char *text = NULL;
     size_t size = 0;
-    imk_result_line(result, "# %s (%s)\n# source: %s", device->name, device->grade, device->source);
-    if (device->note[0])
-        imk_result_line(result, "# note: %s", device->note);
+    if (!s->device) {
+        imk_result_line(result,
+                        "# %s: the catalogue has no errors of this part, only what a count "
+                        "is",
+                        s->name);
+        show_sensitivities(s->name, result);
+        return;
+    }
+    imk_result_line(result, "# %s (%s)\n# source: %s", s->name, s->device->grade,
+                    s->device->source);
+    if (s->device->note[0])
+        imk_result_line(result, "# note: %s", s->device->note);
+    show_sensitivities(s->name, result);
     (void)command_unless_memory(imk_model_print(model, NULL, &text, &size, NULL));
     if (size > 0)
         text[size - 1] = '\0'; /* the line feed, which the result adds */
@@ -88,41 +198,63 @@ static void show_entry(const imk_device *device, const imk_model *model, imk_res
     free(text);
 }
 
-/* @param only  NULL: all */
-static void show(const imk_device *only, imk_model *model, imk_result *result)
+/* The devices, or the parts that are none. */
+static void show_some(const subjects *chosen, bool devices, imk_table *table, imk_model *model,
+                      imk_result *result)
 {
-    imk_result_object(result, "inputs");
-    if (only)
-        imk_result_text(result, "name", only->name);
-    imk_result_end(result);
-    imk_result_object(result, "result");
-    imk_result_array(result, "devices");
-    imk_table *table = only ? NULL : begin_table(result);
-    for (size_t d = 0; d < imk_device_count(); d++) {
-        const imk_device *device = imk_device_get(d);
-        if (only && device != only)
+    imk_result_array(result, devices ? "devices" : "parts");
+    for (size_t i = 0; i < chosen->count; i++) {
+        const subject *s = &chosen->of[i];
+        if ((s->device != NULL) != devices)
             continue;
-        imk_device_model(device, model);
-        show_data(device, model, result);
-        if (only)
-            show_entry(device, model, result);
+        if (s->device)
+            imk_device_model(s->device, model);
+        show_data(s, model, result);
+        if (table)
+            show_row(s, model, table);
         else
-            show_row(device, model, table);
+            show_entry(s, model, result);
     }
-    imk_result_end(result);
     imk_result_end(result);
 }
 
+/* @param name  as it was asked for; NULL: all */
+static void show(const subjects *chosen, const char *name, imk_model *model, imk_result *result)
+{
+    const bool one = name && chosen->count == 1;
+    imk_result_object(result, "inputs");
+    if (name)
+        imk_result_text(result, "name", one ? chosen->of[0].name : name);
+    imk_result_end(result);
+    imk_result_object(result, "result");
+    imk_table *table = one ? NULL : begin_table(result);
+    show_some(chosen, true, table, model, result);
+    show_some(chosen, false, table, model, result);
+    imk_result_end(result);
+}
+
+/* The nearest names, at most three. */
 static int unknown(const char *name)
 {
-    size_t count = imk_device_count();
-    const char **names = command_memory(NULL, count * sizeof *names);
-    for (size_t d = 0; d < count; d++)
-        names[d] = imk_device_get(d)->name;
-    const char *nearest = command_nearest(name, count, names);
+    enum { NEAREST = 3 };
+    char text[256] = "";
+    subjects all = select_subjects(NULL);
+    const char **names = command_memory(NULL, all.count * sizeof *names);
+    for (size_t i = 0; i < all.count; i++)
+        names[i] = all.of[i].name;
+    for (int found = 0; found < NEAREST; found++) {
+        const size_t nearest = imk_nearest_name(name, all.count, names);
+        if (nearest >= all.count)
+            break;
+        const size_t used = strlen(text);
+        (void)snprintf(text + used, sizeof text - used, "%s\"%s\"", found > 0 ? " or " : "",
+                       names[nearest]);
+        names[nearest] = NULL;
+    }
     free(names);
-    if (nearest)
-        return command_failed("there is no device \"%s\"; did you mean \"%s\"?", name, nearest);
+    free(all.of);
+    if (text[0])
+        return command_failed("there is no device \"%s\"; did you mean %s?", name, text);
     return command_failed("there is no device \"%s\"; the names are listed by: imukit devices",
                           name);
 }
@@ -134,13 +266,16 @@ static int run(int count, char **words)
     int code = options_parse(&devices_verb, count, words, &o, operands);
     if (code >= 0)
         return code;
-    const imk_device *device = operands[0] ? imk_device_find(operands[0]) : NULL;
-    if (operands[0] && !device)
+    subjects chosen = select_subjects(operands[0]);
+    if (chosen.count == 0) {
+        free(chosen.of);
         return unknown(operands[0]);
+    }
     imk_model *model = command_memory(NULL, sizeof *model);
     imk_result *result = show_begin("devices");
-    show(device, model, result);
+    show(&chosen, operands[0], model, result);
     free(model);
+    free(chosen.of);
     return show_end(result, &(show_options){.json = o.json}, EXIT_DONE);
 }
 
@@ -152,8 +287,11 @@ const verb devices_verb = {
     .operands_maximum = 1,
     .examples = {{"imukit devices", "every entry with its main figures"},
                  {"imukit devices ADIS16488", "one entry: its source, notes and model file"}},
-    .description = "Every verb that takes a MODEL accepts these names. Figures are of the axis "
-                   "given first; bias instability is B of IEEE 952: datasheets that quote the "
-                   "floor of the Allan deviation were divided by 0.664, and the note says so.",
+    .description =
+        "A name may be a part of one; case, blanks and hyphens do not count. Several "
+        "that fit are listed. An entry says what a count of the part is, by range. "
+        "Every verb that takes a MODEL accepts these names in full. Figures are of the axis "
+        "given first; bias instability is B of IEEE 952: datasheets that quote the "
+        "floor of the Allan deviation were divided by 0.664, and the note says so.",
     .groups = {{"Options", 1, devices_option_table, 0}},
     .run = run};

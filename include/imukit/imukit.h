@@ -22,6 +22,7 @@
 #include "imukit/compensate.h"
 #include "imukit/correct.h"
 #include "imukit/decimal.h"
+#include "imukit/device_sensitivity.h"
 #include "imukit/distort.h"
 #include "imukit/distributions.h"
 #include "imukit/drift.h"

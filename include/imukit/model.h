@@ -277,7 +277,7 @@ typedef struct imk_device {
 IMK_API size_t imk_device_count(void);
 /** Entry `index`; pointers live for ever. NULL beyond the end. */
 IMK_API const imk_device *imk_device_get(size_t index);
-/** Entry by name, ASCII case and blanks ignored; NULL when there is none. */
+/** Entry by name, compared as in imk_name_equal() (names.h); NULL when there is none. */
 IMK_API const imk_device *imk_device_find(const char *name);
 /** Model of an entry; it is always valid. The Allan floor of a datasheet is divided by 0.664 to
  *  give B. `device` must come from imk_device_get() or imk_device_find(), and not be a copy. */

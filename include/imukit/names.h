@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file names.h
- *  The nearest of a list of names, for "did you mean …?"; and kinds of files by the ending of their
- *  names. */
+ *  Names that are the same but for case, blanks and hyphens; the nearest of a list of names, for
+ *  "did you mean …?"; and kinds of files by the ending of their names. */
 #ifndef IMUKIT_NAMES_H
 #define IMUKIT_NAMES_H
 
@@ -19,6 +19,13 @@ IMK_BEGIN_C
  *          is longer than 63 bytes. The time for each candidate grows with the product of the
  *          lengths. */
 IMK_API size_t imk_nearest_name(const char *name, size_t count, const char *const *candidates);
+
+/** True when two names are the same; ASCII case, blanks, '-' and '_' do not count. Names without
+ *  other characters, or with more than 63 of them, are like no name. */
+IMK_API bool imk_name_equal(const char *a, const char *b);
+
+/** True when `part` occurs in `name`, by the same rules. */
+IMK_API bool imk_name_within(const char *part, const char *name);
 
 /** True when a name ends in `ending`, such as ".csv". Case matters. @param name  may be NULL, which
  *  has no ending */

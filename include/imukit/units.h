@@ -83,6 +83,18 @@ IMK_API imk_status imk_quantity_parse(const char *begin, const char *end, imk_di
                                       size_t max_count, double *values, double *sigmas,
                                       size_t *count, imk_unit *unit, imk_error *error);
 
+/** Read what a count of a digital sensor is, as data sheets write it: counts per unit
+ *  ("16.4 LSB/(deg/s)", "2048 counts/g") or units per count ("8.75 mdps/LSB", "0.061 mg/digit").
+ *  LSB, count and digit are the same; mdps is a thousandth of a degree per second.
+ *
+ *  @param begin,end  the text; blanks around it are allowed
+ *  @param quantity   what is counted: the dimension of rad/s, m/s^2, K …
+ *  @param per_count  receives the SI value of one count, above 0
+ *  @return IMK_ERROR_SYNTAX (no number), _RANGE (not above 0), _UNIT_MISSING, _UNIT_UNKNOWN,
+ *          _DIMENSION (error.expected: what the quantity needs) */
+IMK_API imk_status imk_count_scale_parse(const char *begin, const char *end, imk_dimension quantity,
+                                         double *per_count, imk_error *error);
+
 /** Write values (and sigmas unless NULL or all 0) in a unit, the shortest decimals that read back
  *  to the same doubles; in SI base units where no decimal in `unit` does (a density per sqrt(Hz)
  *  stays one). Equal sigmas are written once. Numbers that are not finite are written in SI.

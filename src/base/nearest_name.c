@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The nearest name of a list, by the distance of Damerau and Levenshtein in its restricted form
- * (optimal string alignment) [DAMERAU1964]: with d[i][j] for the first i and j letters,
+/* Names compared by their letters; and the nearest name of a list, by the distance of Damerau and
+ * Levenshtein in its restricted form (optimal string alignment) [DAMERAU1964]: with d[i][j] for the
+ * first i and j letters,
  *
  *     d[i][j] = min( d[i-1][j] + 1, d[i][j-1] + 1, d[i-1][j-1] + (a_i != b_j),
  *                    d[i-2][j-2] + 1  where a_i a_{i-1} = b_{j-1} b_j )
@@ -85,4 +86,24 @@ size_t imki_nearest_name(const char *name, size_t count, const char *const *cand
 size_t imk_nearest_name(const char *name, size_t count, const char *const *candidates)
 {
     return imki_nearest_name(name, count, candidates);
+}
+
+bool imk_name_equal(const char *a, const char *b)
+{
+    char letters[2][LETTERS_MAX];
+    const size_t length = reduce(a, letters[0]);
+    return length != SIZE_MAX && length > 0 && reduce(b, letters[1]) == length &&
+           memcmp(letters[0], letters[1], length) == 0;
+}
+
+bool imk_name_within(const char *part, const char *name)
+{
+    char wanted[LETTERS_MAX], letters[LETTERS_MAX];
+    const size_t wanted_length = reduce(part, wanted), length = reduce(name, letters);
+    if (wanted_length == SIZE_MAX || wanted_length == 0 || length == SIZE_MAX)
+        return false;
+    for (size_t i = 0; i + wanted_length <= length; i++)
+        if (memcmp(letters + i, wanted, wanted_length) == 0)
+            return true;
+    return false;
 }

@@ -4,8 +4,9 @@
  * it is left out; sensors of which no figure can be taken are left out of the model altogether, so
  * that none is simulated without errors.
  *
- * Densities per root hertz are taken as N itself (two-sided), as the sources use them: should one
- * be a data sheet's one-sided density, N is smaller by sqrt(2). */
+ * Densities per root hertz are taken as N itself (two-sided), as the sources of this file use them:
+ * should one be a data sheet's one-sided density, N is smaller by sqrt(2). The MPU-6000 is as in
+ * device_table_parts.c. */
 #include "device_table_internal.h"
 
 /* Biases [ug], [deg/h]; scale factors (diagonal) with cross couplings [ppm]; g-sensitivity
@@ -186,13 +187,16 @@ const imki_device_entry imki_device_table[] = {
      .accel = {.present = true, .white = 0.08684, .instability = 27.55, .range = 5}},
     {.device =
          {"MPU-6000", "consumer MEMS",
+          "data sheet PS-MPU-6000A-00 rev. 3.4, sections 6.1 and 6.2, as several projects copy it; "
           "microsoft/AirSim: AirLib/include/sensors/imu/ImuSimpleParams.hpp",
-          "Figures of a thesis quoted in the source; instabilities as given, without their "
-          "correlation times (500 s, 800 s). 0.24 mg/sqrt(Hz) taken as two-sided, as used there.",
+          "Noise and offsets of the data sheet, as of the MPU-6050: 0.005 deg/s/sqrt(Hz) and 400 "
+          "ug/sqrt(Hz), one-sided; 20 deg/s, 50 mg. Instabilities of a thesis quoted in the second "
+          "source, without their correlation times (500 s, 800 s). Its 0.3 deg/sqrt(h) reads the "
+          "density as two-sided; its 0.24 mg/sqrt(Hz) is not that of the data sheet.",
           false},
-     .method = "measured",
-     .gyro = {.present = true, .white = 0.3, .instability = 4.6},
-     .accel = {.present = true, .white = 0.1412, .instability = 36}},
+     .method = "datasheet",
+     .gyro = {.present = true, .white = 0.2121, .instability = 4.6, .repeatability = 72000},
+     .accel = {.present = true, .white = 0.1664, .instability = 36, .repeatability = 50000}},
     {.device = {"OpenRTK330", "industrial MEMS", "Aceinna/docs_openrtk: 300ZA/imu-sensors.rst",
                 "Upper limits of the maker, ranges lower limits; floors divided by 0.664.", false},
      .method = "datasheet",
@@ -413,15 +417,18 @@ const imki_device_entry imki_device_table[] = {
      .method = "measured",
      .gyro = {.present = true, .white = 0.1368, .instability = 0.144, .random_walk = 2.116},
      .accel = {.present = true, .white = 0.1056, .instability = 10.2}},
-    {.device = {"VN-100", "industrial MEMS",
-                "estimator settings citing the maker's support (repository not known)",
-                "0.0035 deg/s/sqrt(Hz) and 0.14 mg/sqrt(Hz); the maker's support gives the same "
-                "numbers as random walks there, so they are N. A random walk of the accelerometer "
-                "bias (5e-5 m/s^3/sqrt(Hz)) is a filter's and left out.",
-                false},
+    {.device =
+         {"VN-100", "industrial MEMS",
+          "estimator settings citing the maker's support (repository not known); data sheet "
+          "as four public projects copy it",
+          "0.0035 deg/s/sqrt(Hz) and 0.14 mg/sqrt(Hz); the maker's support gives the same "
+          "numbers as random walks there, so they are N. Floors are the limits in the copies, "
+          "10 deg/h (two of them have 5 deg/h, too) and 0.04 mg, divided by 0.664. A random "
+          "walk of the accelerometer bias (5e-5 m/s^3/sqrt(Hz)) is a filter's and left out.",
+          false},
      .method = "datasheet",
-     .gyro = {.present = true, .white = 0.21},
-     .accel = {.present = true, .white = 0.08238}},
+     .gyro = {.present = true, .white = 0.21, .instability = 10, .is_floor = true},
+     .accel = {.present = true, .white = 0.08238, .instability = 40, .is_floor = true}},
     {.device = {"ASTRIX 200", "space FOG",
                 "gyroscope script citing the maker (repository not known)",
                 "Gyros only. Bias stability 0.0005 deg/h at 3 sigma, given here as repeatability "

@@ -9,6 +9,7 @@
 typedef struct imki_device_figures {
     bool present;           /* false also where no figure of the sensors can be taken */
     double white;           /* [deg/sqrt(h)], [m/s/sqrt(h)] */
+    double white_z;         /* of z, where it differs */
     double instability;     /* [deg/h], [ug] */
     bool is_floor;          /* the instability is the floor of the Allan deviation, 0.664 B */
     double random_walk;     /* [deg/h/sqrt(h)], [ug/sqrt(h)] */
@@ -39,5 +40,9 @@ extern const imki_device_entry imki_grade_presets[IMKI_PRESETS];
 
 extern const imki_device_entry imki_device_table[];
 extern const size_t imki_device_table_count;
+
+/* Parts by their data sheets, behind those. */
+extern const imki_device_entry imki_part_table[];
+extern const size_t imki_part_table_count;
 
 #endif

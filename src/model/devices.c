@@ -8,6 +8,7 @@
 #include "device_table_internal.h"
 #include "model_schema_internal.h"
 
+#include "imukit/names.h"
 #include "imukit/units.h"
 
 #include <string.h>
@@ -22,7 +23,7 @@ typedef struct table_units {
 
 size_t imk_device_count(void)
 {
-    return IMKI_PRESETS + imki_device_table_count;
+    return IMKI_PRESETS + imki_device_table_count + imki_part_table_count;
 }
 
 const imk_device *imk_device_get(size_t index)
@@ -30,33 +31,16 @@ const imk_device *imk_device_get(size_t index)
     if (index < IMKI_PRESETS)
         return &imki_grade_presets[index].device;
     index -= IMKI_PRESETS;
-    return index < imki_device_table_count ? &imki_device_table[index].device : NULL;
-}
-
-static bool is_blank(char c)
-{
-    return c == ' ' || c == '\t';
-}
-
-/* Equal but for case and blanks. */
-static bool same_name(const char *a, const char *b)
-{
-    for (;; a++, b++) {
-        while (is_blank(*a))
-            a++;
-        while (is_blank(*b))
-            b++;
-        if (imki_lower(*a) != imki_lower(*b))
-            return false;
-        if (*a == '\0')
-            return true;
-    }
+    if (index < imki_device_table_count)
+        return &imki_device_table[index].device;
+    index -= imki_device_table_count;
+    return index < imki_part_table_count ? &imki_part_table[index].device : NULL;
 }
 
 const imk_device *imk_device_find(const char *name)
 {
     for (size_t i = 0; name && i < imk_device_count(); i++)
-        if (same_name(name, imk_device_get(i)->name))
+        if (imk_name_equal(name, imk_device_get(i)->name))
             return imk_device_get(i);
     return NULL;
 }
@@ -85,6 +69,8 @@ static void set_triad(imk_triad *triad, const imki_device_figures *figures, tabl
     double mrad = imk_unit_of("mrad").scale;
     double to_b = figures->is_floor ? 1 / IMKI_ALLAN_FLOOR : 1;
     set_all(&triad->noise.white, figures->white * unit.white);
+    if (figures->white_z > 0)
+        triad->noise.white.value[2] = figures->white_z * unit.white;
     set_all(&triad->noise.bias_instability, figures->instability * to_b * unit.instability);
     set_all(&triad->noise.random_walk, figures->random_walk * unit.random_walk);
     set_all(&triad->bias.repeatability, figures->repeatability / unit.bias_divisor * unit.bias);

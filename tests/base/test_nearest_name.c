@@ -35,6 +35,25 @@ static void leaves_far_names_alone(void **state)
     assert_true(imk_nearest_name(name, COUNT, keys) == SIZE_MAX);
 }
 
+static void equal_but_for_case_blanks_and_hyphens(void **state)
+{
+    (void)state;
+    assert_true(imk_name_equal("ICM-42688-P", " icm 42688_p"));
+    assert_false(imk_name_equal("ICM-42688-P", "icm42688"));
+    assert_false(imk_name_equal("", ""));
+    assert_false(imk_name_equal("- _", "-"));
+    assert_true(imk_name_within("mti 630", "Xsens MTi-630"));
+    assert_true(imk_name_within("XSENSMTI", "Xsens MTi-630"));
+    assert_false(imk_name_within("mti6300", "Xsens MTi-630"));
+    assert_false(imk_name_within("-", "Xsens MTi-630"));
+    char name[80];
+    memset(name, 'a', sizeof name - 1);
+    name[sizeof name - 1] = '\0';
+    assert_false(imk_name_equal(name, name)); /* too long to compare */
+    assert_false(imk_name_within(name, name));
+    assert_false(imk_name_within("a", name));
+}
+
 static void knows_endings(void **state)
 {
     (void)state;
@@ -61,6 +80,7 @@ int main(void)
         cmocka_unit_test(finds_one_slip),
         cmocka_unit_test(leaves_far_names_alone),
         cmocka_unit_test(takes_the_first_of_equals),
+        cmocka_unit_test(equal_but_for_case_blanks_and_hyphens),
         cmocka_unit_test(knows_endings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

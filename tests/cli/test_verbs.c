@@ -334,9 +334,60 @@ static void test_devices(void **state)
     json_t *document = json_loads(out, JSON_REJECT_DUPLICATES, NULL);
     assert_non_null(document);
     json_decref(document);
-    check_message("$I devices ADIS1648", 1,
-                  "imukit devices: error: there is no device \"ADIS1648\"; did you mean "
-                  "\"ADIS16488\"?\n");
+    sweep();
+}
+
+/* Part of a name, without regard to case, blanks and hyphens. */
+static void test_devices_by_part_of_name(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I devices bmi | cut -d' ' -f1 | head -4"), 0);
+    assert_string_equal(out, "name\nBMI088\nBMI160\nBMI270\n");
+    assert_int_equal(run("$I devices 'Mti 630'"), 0);
+    check_contains(out, "# Xsens MTi-630 (industrial MEMS)\n", "one hit");
+    assert_int_equal(run("$I devices adis16405"), 0); /* "ADIS16405 measured" is another one */
+    check_contains(out, "# ADIS16405 (industrial MEMS)\n", "the name itself");
+    assert_int_equal(run("$I devices ADIS16505-2"), 0);
+    check_contains(out, "# ADIS16505-2: the catalogue has no errors of this part", "a part");
+    check_contains(out, "#   ADIS16505-2 gyro: 40 LSB/(deg/s), 16 bits\n", "a part");
+    assert_int_equal(run("$I devices adis1649 | grep -c 'sensitivities only'"), 0);
+    assert_string_equal(out, "3\n");
+    check_message("$I devices ICM20649", 1,
+                  "imukit devices: error: there is no device \"ICM20649\"; did you mean "
+                  "\"ICM20602\" or \"ICM-20948\"?\n");
+    check_message("$I devices xyz", 1,
+                  "imukit devices: error: there is no device \"xyz\"; the names are listed by: "
+                  "imukit devices\n");
+    sweep();
+}
+
+/* What a count is, in an entry that stays a model file, and in its JSON. */
+static void test_devices_sensitivities(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I devices bmi088 | tee d.yaml"), 0);
+    check_contains(out, "#   BMI088 accel 24 g: 1365 LSB/g, 16 bits\n", "an entry");
+    check_contains(out, "#   BMI088 temperature: 0.125 K/LSB, 11 bits, 0 at 23 degC\n", "an entry");
+    assert_int_equal(run("$I grade d.yaml"), 0);
+    assert_string_equal(err, "");
+    assert_int_equal(run("$I devices bmi088 --json"), 0);
+    json_t *document = json_loads(out, JSON_REJECT_DUPLICATES, NULL), *list, *row;
+    const json_t *result = json_object_get(document, "result");
+    list = json_object_get(json_array_get(json_object_get(result, "devices"), 0), "sensitivities");
+    assert_int_equal(json_array_size(list), 10);
+    row = json_array_get(list, 8);
+    assert_string_equal(json_string_value(json_object_get(row, "kind")), "accel");
+    assert_string_equal(json_string_value(json_object_get(row, "stated")), "1365 LSB/g");
+    const json_t *value = json_object_get(json_object_get(row, "per_count"), "value");
+    CHECK_RELATIVE(json_number_value(value), 9.80665 / 1365, 1e-14);
+    assert_true(json_is_null(json_object_get(row, "zero")));
+    assert_int_equal(json_array_size(json_object_get(result, "parts")), 0);
+    json_decref(document);
+    assert_int_equal(run("$I devices ADIS16505 --json"), 0);
+    document = json_loads(out, JSON_REJECT_DUPLICATES, NULL);
+    list = json_object_get(json_object_get(document, "result"), "parts");
+    assert_int_equal(json_array_size(list), 3);
+    json_decref(document);
     sweep();
 }
 
@@ -412,6 +463,8 @@ int main(void)
         cmocka_unit_test(test_identify_into),
         cmocka_unit_test(test_models),
         cmocka_unit_test(test_devices),
+        cmocka_unit_test(test_devices_by_part_of_name),
+        cmocka_unit_test(test_devices_sensitivities),
         cmocka_unit_test(test_convert),
         cmocka_unit_test(test_plots),
     };

@@ -250,6 +250,8 @@ static const imki_named_unit units[] = {
     {"counts", 1.0, 0.0, COUNT, false},
     {"LSB", 1.0, 0.0, COUNT, false},
     {"lsb", 1.0, 0.0, COUNT, false},
+    {"digit", 1.0, 0.0, COUNT, false},
+    {"digits", 1.0, 0.0, COUNT, false},
     {"%", 1e-2, 0.0, NONE, false},
     {"percent", 1e-2, 0.0, NONE, false},
     {"ppm", 1e-6, 0.0, NONE, false},
