@@ -31,6 +31,10 @@ static log_input input_of(const calibrate_options *o, bool table)
     log_input input = o->log;
     if (table)
         input.file.rate = 1;
+    if (input.file.device) { /* the ranges are those of the device, too */
+        input.file.gyro_range = o->range[0];
+        input.file.accel_range = o->range[1];
+    }
     return input;
 }
 

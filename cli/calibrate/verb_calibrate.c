@@ -241,5 +241,5 @@ const verb calibrate_verb = {
     .groups = {{"Options", COUNT(result_options), result_options, 0},
                {"The test", COUNT(test_options), test_options, 0},
                {"What to look for in the logs", COUNT(log_options), log_options, 0},
-               {"Reading the logs", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
+               {"Reading the logs", LOG_RANGELESS_OPTIONS, log_input_options, AT(log)}},
     .run = run};

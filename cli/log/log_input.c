@@ -38,6 +38,17 @@ const option log_input_options[LOG_INPUT_OPTIONS] = {
              "the sensor was still handled"},
     {"before", OPTION_QUANTITY, AT(file.before), .value = "TIME", .unit = "s",
      .choices = "1e-9..1e9", .help = "leave out what is after this time from the start of the log"},
+    {"gyro-scale", OPTION_TEXT, AT(file.gyro_scale), .value = "SCALE",
+     .help = "what a count of the gyros is, such as \"16.4 LSB/(deg/s)\" or \"8.75 mdps/LSB\""},
+    {"accel-scale", OPTION_TEXT, AT(file.accel_scale), .value = "SCALE",
+     .help = "what a count of the accelerometers is, such as \"2048 LSB/g\" or \"0.061 mg/LSB\""},
+    {"device", OPTION_TEXT, AT(file.device), .value = "PART",
+     .help = "digital part whose counts these are, such as BMI088; imukit devices PART shows its "
+             "sensitivities"},
+    {"gyro-range", OPTION_TEXT, AT(file.gyro_range), .value = "RANGE",
+     .help = "full scale of the gyros of --device, such as 2000deg/s"},
+    {"accel-range", OPTION_TEXT, AT(file.accel_range), .value = "RANGE",
+     .help = "full scale of the accelerometers of --device, such as 16g"},
     {"gaps", OPTION_CHOICE, AT(gaps), .value = "CHOICE", .choices = "refuse|bridge|longest|keep",
      .help = "what to do with rows that are missing, not finite or out of order: refuse the log "
              "(the default, but not of allan and identify; gaps of up to 0.1 % are bridged with a "

@@ -62,6 +62,12 @@ typedef struct imk_log_settings {
     const char *topic;
     /** Which of the sensors of one name: its imk_log_stream.instance plus 1; 0: the only one. */
     int instance;
+    /** What a count of gyros and accelerometers is, "16.4 LSB/(deg/s)", "0.061 mg/LSB"
+     *  (imk_count_scale_parse()). Or the device whose counts these are, with its full scales, "2000
+     *  deg/s", "16 g", where it has several (imk_device_sensitivity_find()); its temperature then is
+     *  converted, too. NULL: counts stay counts. */
+    const char *gyro_scale, *accel_scale;
+    const char *device, *gyro_range, *accel_range;
     double rate; /**< sampling rate [Hz]; required without a time column; 0: from the times */
     /** Only rows from `after` to `before` seconds from the first one are read; 0: from the first,
      *  to the last. Times stay as they are; findings are of the rows read. */

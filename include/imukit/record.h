@@ -33,7 +33,8 @@ typedef enum imk_quantity {
 typedef enum imk_unit_origin {
     IMK_UNIT_OF_HEADER = 0, /**< the file, beside the column */
     IMK_UNIT_OF_FORMAT,     /**< the definition of the format or of the message */
-    IMK_UNIT_OF_SETTINGS    /**< imk_log_settings */
+    IMK_UNIT_OF_SETTINGS,   /**< imk_log_settings */
+    IMK_UNIT_OF_DEVICE      /**< the data sheet of the device that the settings name */
 } imk_unit_origin;
 
 /** One column of a log. */

@@ -201,6 +201,8 @@ imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *set
     const char *field = column->name;
     if (unit.begin == unit.end) {
         const char *setting = unit_setting(k->quantity, settings);
+        if (!setting && imki_log_counted(settings, k->quantity))
+            setting = "count";
         if (!setting)
             return imk_error_set(error, IMK_ERROR_UNIT_MISSING, "", column->name, k->due);
         unit = (imki_log_piece){setting, setting + strlen(setting)};
@@ -345,6 +347,11 @@ static imk_status add_cell(imki_log_layout_read *layout, size_t cell, imki_log_p
                              "remove one of the two, or skip it: - in its place in --columns");
     layout->cell_column[cell] = (int)index;
     layout->factor[index] = column->unit.scale;
+    layout->offset[index] = column->unit.offset;
+    const imk_status counts = imki_log_counts_apply(settings, column, &layout->factor[index],
+                                                    &layout->offset[index], error);
+    if (counts != IMK_OK)
+        return counts;
     if (column->quantity == IMK_QUANTITY_TIME)
         layout->time_column = (int)index;
     layout->has_increments |= column->increment;

@@ -30,6 +30,11 @@ static imk_status check_settings(const imk_log_settings *settings, imk_error *er
             error->value = settings->rate;
         return IMK_ERROR_RANGE;
     }
+    if ((settings->gyro_range || settings->accel_range) && !settings->device)
+        return imk_error_set(error, IMK_ERROR_CONFLICT,
+                             settings->gyro_range ? "gyro-range" : "accel-range",
+                             "it is the full scale of a device, and none is named",
+                             "add --device PART, or state --gyro-scale, --accel-scale");
     return imki_log_part_check(settings, error);
 }
 
@@ -325,7 +330,7 @@ static void finish_block(imk_log_reader *reader, size_t rows, double *time, doub
             for (size_t i = 0; i < rows; i++)
                 value[i] =
                     reader->rate > 0.0 ? value[i] * reader->rate : value[i] / reader->interval[i];
-        const double offset = layout->column[j].unit.offset;
+        const double offset = layout->offset[j];
         if (offset != 0.0 && !layout->column[j].label)
             for (size_t i = 0; i < rows; i++)
                 value[i] += offset;

@@ -21,6 +21,7 @@ typedef struct imki_log_layout_read {
     size_t column_count;
     imk_log_column column[IMK_LOG_COLUMNS_MAX];
     double factor[IMK_LOG_COLUMNS_MAX]; /* per column: scale, with the sign of the axes */
+    double offset[IMK_LOG_COLUMNS_MAX]; /* per column, added to factor times number */
     int time_column;                    /* -1: none */
     bool has_increments;
 } imki_log_layout_read;
@@ -48,6 +49,15 @@ bool imki_log_piece_is_number(imki_log_piece piece, double *value);
 imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
                                 const imk_log_settings *settings, imki_log_layout_read *layout,
                                 imk_error *error);
+
+/* log_counts.c: do the settings say what counts of a quantity are? */
+bool imki_log_counted(const imk_log_settings *settings, imk_quantity quantity);
+/* Make a column of counts one of a physical unit, where the settings say what a count is: its unit,
+ * and SI value = *factor * count + *offset. Other columns stay.
+ * @return IMK_ERROR_CONFLICT (it is none of counts), or what imk_count_scale_parse() and
+ *         imk_device_sensitivity_find() return */
+imk_status imki_log_counts_apply(const imk_log_settings *settings, imk_log_column *column,
+                                 double *factor, double *offset, imk_error *error);
 
 /* Name and unit of one column ("gyro_x [deg/s]"), with the unit from the settings if need be. */
 imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *settings,

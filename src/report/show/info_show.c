@@ -14,7 +14,7 @@ static const char *const basis_words[] = {"read",
                                           "from the places read"};
 static const char *const basis_keys[] = {"read", "index", "ends", "size", "beginning", "places"};
 static const char *const motion_keys[] = {"unknown", "at_rest", "poses", "moves"};
-static const char *const origin_words[] = {"header", "format", "option"};
+static const char *const origin_words[] = {"header", "format", "option", "device"};
 
 /* ---- sensors --------------------------------------------------------------------------------- */
 
