@@ -79,9 +79,9 @@ typedef struct imk_parameter_settings {
     /** GLIM: frames (LiDAR scans) per second [Hz], 1e-9 … 1e9, because its noise of the biases is
      *  per frame; 0: not given. */
     double frame_rate;
-    /** Writing a format that has a random walk but no bias instability: carry B into the walk, K^2
-     * + (6 ln 2/pi) B^2/T, which has the Allan deviation of B at T [s], 1e-8 … 1e8; 0: B is left
-     *  out. */
+    /** Writing a format that has a random walk but no bias instability: carry B into the walk, as
+     *  sqrt(K^2 + (6 ln 2/pi) B^2/T), which has the Allan deviation of B at T [s], 1e-8 … 1e8. 0: B
+     *  is left out. */
     double bias_instability_tau;
     /** Writing: where the model has no random walk (K), use its upper bound in the evidence. */
     bool use_bounds;

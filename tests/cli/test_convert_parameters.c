@@ -209,7 +209,7 @@ static void test_round_trip(void **state)
                    {"dlio.yaml", "dlio", "", false},
                    {"glim.json", "glim", "--frame-rate 10Hz", false},
                    {"orb_slam3.yaml", "orb-slam3", "--rate 200Hz", true},
-                   {"gtsam.py", "gtsam", "", false},
+                   {"gtsam.txt", "gtsam", "", false},
                    {"airsim.json", "airsim", "", false},
                    {"fusion.txt", "fusion", "", false}};
     char line[1500];

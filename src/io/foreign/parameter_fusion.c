@@ -144,14 +144,14 @@ void imki_fusion_read(imki_parameters *p)
 static void write_constant(imki_parameters *p, const char *type, const char *name, int count,
                            const double *values)
 {
-    imki_text_add(&p->out, "static const %s %s = {", type, name);
+    imki_text_add(&p->out, "static const %s %s = {{", type, name);
     for (int i = 0; i < count; i++) {
         char text[IMK_DECIMAL_SIZE];
         snprintf(text, sizeof text, "%s", imki_shortest(values[i]).text);
         imki_text_add(&p->out, "%s%s%sf", i > 0 ? ", " : "", text,
                       text[strcspn(text, ".e")] ? "" : ".0");
     }
-    imki_text_add(&p->out, "};\n");
+    imki_text_add(&p->out, "}};\n");
 }
 
 static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad)

@@ -75,7 +75,8 @@ static void numbers_of(const char *text, const char *name, int count, double *va
 {
     const char *at = strstr(text, name);
     assert_non_null(at);
-    at += strcspn(at, "{[") + 1;
+    at += strcspn(at, "{[");
+    at += strspn(at, "{[");
     for (int i = 0; i < count; i++) {
         char *end;
         values[i] = strtod(at, &end);
@@ -183,7 +184,7 @@ static void test_fusion(void **state)
     imk_model_default(&model);
     model.gyro.scale_factor.fixed.value[0] = 0.25;
     char *text = print("fusion");
-    assert_non_null(strstr(text, "gyroscopeSensitivity = {0.8f, 1.0f, 1.0f};"));
+    assert_non_null(strstr(text, "gyroscopeSensitivity = {{0.8f, 1.0f, 1.0f}};"));
     assert_null(strstr(text, "softIronMatrix"));
     free(text);
 }

@@ -282,7 +282,7 @@ static void test_gtsam(void **state)
     check_part(text, "#pragma once");
     CHECK_RELATIVE(number_of(text, "setBiasAccCovariance(gtsam::Vector3("), 1e-10, rounding);
     free(text);
-    CHECK_OK(read_as("gtsam", sample("gtsam.py")));
+    CHECK_OK(read_as("gtsam", sample("gtsam.txt")));
     check_axes(&back.gyro.noise.white, 1e-4, 2e-4, 3e-4);
     check_axes(&back.accel.noise.random_walk, 1e-5, 1e-5, 1e-5);
     CHECK_OK(read_as("gtsam", "p.setGyroscopeCovariance(np.diag([1e-8,1e-8,1e-8]))"));
