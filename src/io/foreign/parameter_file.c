@@ -267,6 +267,10 @@ static imk_status check_model(const imk_parameter_settings *settings, const imk_
         status = imk_model_validate(model, error);
     if (status != IMK_OK)
         return status;
+    if (!model->gyro.present && !model->accel.present && settings->format != IMK_PARAMETERS_FUSION)
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "model",
+                             "the model has neither gyros nor accelerometers",
+                             "a model of an IMU, or --to fusion for a magnetometer alone");
     const imk_triad *triads[2] = {&model->gyro, &model->accel};
     for (int i = 0; i < 2; i++)
         if (triads[i]->present && triads[i]->axis_count != 3)

@@ -189,6 +189,24 @@ static void test_fusion(void **state)
     free(text);
 }
 
+/* Of a magnetometer alone only Fusion has something to say. */
+static void test_magnetometer_alone(void **state)
+{
+    (void)state;
+    fill_model();
+    model.gyro.present = model.accel.present = false;
+    char *text = print("fusion");
+    check_fusion(text, "mag", &model.mag, 1e-6);
+    free(text);
+    for (int format = 1; format < IMK_PARAMETERS_FUSION; format++) {
+        imk_parameter_settings settings = imk_parameter_default();
+        size_t size;
+        settings.format = (imk_parameter_format)format;
+        CHECK_STATUS(imk_parameters_print(NULL, &settings, &model, &text, &size, NULL, NULL),
+                     IMK_ERROR_UNSUPPORTED);
+    }
+}
+
 static void test_fusion_read(void **state)
 {
     (void)state;
@@ -218,6 +236,7 @@ static void test_fusion_read(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_dlio), cmocka_unit_test(test_fusion),
-                                       cmocka_unit_test(test_fusion_read)};
+                                       cmocka_unit_test(test_fusion_read),
+                                       cmocka_unit_test(test_magnetometer_alone)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
