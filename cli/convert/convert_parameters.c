@@ -15,9 +15,11 @@
 /* Position 0 applies when the option is not given. The names stand in the order of
  * imk_parameter_format and imk_density. */
 static const char formats[] =
-    "auto|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter";
+    "auto|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter|lio-sam|"
+    "fast-lio|dlio|glim|orb-slam3|gtsam|airsim|fusion";
 static const char target_formats[] =
-    "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter";
+    "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter|lio-sam|"
+    "fast-lio|dlio|glim|orb-slam3|gtsam|airsim|fusion";
 
 #define AT(field) offsetof(parameter_options, field)
 
@@ -42,6 +44,16 @@ const option parameter_option_table[PARAMETER_OPTIONS] = {
          "--to filter: shortest averaging time at which the replacement has to hold; default 1 s"},
     {"tau-to", OPTION_QUANTITY, AT(tau_to), .value = "TIME", .unit = "s", .choices = "1e-9..1e9",
      .help = "--to filter: longest averaging time at which it has to hold; default 1000 s"},
+    {"bias-instability-tau", OPTION_QUANTITY, AT(bias_instability_tau), .value = "TIME",
+     .unit = "s", .choices = "1e-8..1e8",
+     .help =
+         "a format with a random walk (K) but no bias instability (B): carry B into the walk, so "
+         "that its Allan deviation is right at this averaging time"},
+    {"use-bounds", OPTION_FLAG, AT(use_bounds),
+     .help = "where the model has no random walk (K), use its upper bound in the evidence"},
+    {"frame-rate", OPTION_QUANTITY, AT(frame_rate), .value = "RATE", .unit = "Hz",
+     .choices = "1e-9..1e9",
+     .help = "glim: LiDAR scans per second, because its noise of the biases is per frame"},
 };
 
 static bool only_parameters(const char *path)
@@ -164,6 +176,9 @@ int convert_parameters(const parameter_options *options, double rate, const char
     settings.rate = rate;
     settings.density = (imk_density)options->density;
     settings.sensor = options->sensor;
+    settings.frame_rate = options->frame_rate;
+    settings.bias_instability_tau = options->bias_instability_tau;
+    settings.use_bounds = options->use_bounds;
     settings.filter.flicker = (imk_filter_flicker)options->flicker;
     if (options->tau_from > 0)
         settings.filter.from = options->tau_from;
@@ -172,12 +187,19 @@ int convert_parameters(const parameter_options *options, double rate, const char
     if (!(settings.filter.from <= settings.filter.to))
         return command_misused("--tau-from %g s is later than --tau-to %g s", settings.filter.from,
                                settings.filter.to);
+    if (options->to == 0 && (options->bias_instability_tau > 0 || options->use_bounds))
+        return command_misused("--bias-instability-tau and --use-bounds are for parameter files of "
+                               "other programs, and %s is a model; state the format with --to",
+                               out);
     if (options->json && strcmp(out, "-") == 0)
         return command_misused("--json and the file would both go to standard output");
     imk_model *model = command_memory(NULL, sizeof *model);
     imk_parameter_notes *notes = command_zeroed(2 * sizeof *notes); /* of reading, of writing */
     imk_parameter_format format = IMK_PARAMETERS_UNKNOWN;
     int code = read_source(options, &settings, in, model, &format, &notes[0]);
+    if (code < 0 && options->frame_rate > 0 && format != IMK_PARAMETERS_GLIM &&
+        options->to != IMK_PARAMETERS_GLIM)
+        code = command_misused("--frame-rate is for the format glim");
     if (code < 0)
         code = write_target(options, &settings, in, out, model, &notes[1]);
     if (code < 0)

@@ -10,11 +10,13 @@ typedef struct parameter_options {
     int density;  /* imk_density; 0: not given */
     const char *sensor;
     bool json;
-    int flicker;             /* imk_filter_flicker */
-    double tau_from, tau_to; /* [s]; 0: not given */
+    int flicker;                             /* imk_filter_flicker */
+    double tau_from, tau_to;                 /* [s]; 0: not given */
+    double bias_instability_tau, frame_rate; /* [s], [Hz]; 0: not given */
+    bool use_bounds;
 } parameter_options;
 
-enum { PARAMETER_OPTIONS = 8 };
+enum { PARAMETER_OPTIONS = 11 };
 extern const option parameter_option_table[PARAMETER_OPTIONS];
 
 /* Is this a conversion of parameters: by the options, or by what the file holds?

@@ -164,9 +164,12 @@ static int run(int count, char **words)
         return code;
     if (wanted)
         return convert_parameters(&o.parameters, o.log.file.rate, operands[0], operands[1]);
-    if (o.parameters.json || o.parameters.sensor || o.parameters.density)
-        return command_misused("%s: --json, --sensor and --density are for parameter files; state "
-                               "the format with --from",
+    if (o.parameters.json || o.parameters.sensor || o.parameters.density ||
+        o.parameters.use_bounds || o.parameters.bias_instability_tau > 0 ||
+        o.parameters.frame_rate > 0)
+        return command_misused("%s: --json, --sensor, --density, --bias-instability-tau, "
+                               "--use-bounds and --frame-rate are for parameter files; state the "
+                               "format with --from or --to",
                                operands[0]);
     bool from_model, to_model;
     find_kinds(operands[0], operands[1], &from_model, &to_model);
@@ -200,7 +203,8 @@ const verb convert_verb = {
         "Increments become rates. Values keep their units unless an option changes them.\n\nA "
         "model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
         "Parameter files of kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, "
-        "openvins, vins, px4 and ardupilot are recognised by their content. Assumptions about "
+        "openvins, vins, px4, ardupilot, lio-sam, fast-lio, dlio, glim, orb-slam3, gtsam, airsim "
+        "and fusion are recognised by their content. Assumptions about "
         "units and densities, and values that a format cannot hold, are reported on standard "
         "error. docs/other-formats.md describes the formats.",
     .groups = {OPTION_GROUP("Options", convert_option_table, 0),

@@ -35,11 +35,9 @@ static void test_from_model(void **state)
     (void)state;
     put("model.yaml", "imukit: 1\nname: a unit\ngyro:\n  noise: {angle_random_walk: 0.3 "
                       "deg/sqrt(h), bias_instability: 5 deg/h}\n");
-    check_message(
-        "$I convert model.yaml out.yaml --to kalibr --rate 200Hz", 0,
-        "imukit convert: warning: gyroscope_random_walk is 0, which kalibr and OpenVINS do "
-        "not accept: set a value\nimukit convert: warning: gyro.noise.bias_instability "
-        "is not held by the format kalibr\n");
+    check_message("$I convert model.yaml out.yaml --to navego --rate 200Hz", 0,
+                  "imukit convert: warning: gyro.noise.bias_instability is not held by the format "
+                  "navego\n");
     check_message("$I convert model.yaml out.sdf --to gazebo", 1,
                   "imukit convert: error: model.yaml: stddev: \"stddev\" is per sample, and the "
                   "sampling rate is not known; add --rate 200Hz (samples per second)\nNext: imukit "
@@ -48,12 +46,94 @@ static void test_from_model(void **state)
     check_message(
         "$I convert model.yaml out.x --to kalibra", 2,
         "imukit convert: error: --to kalibra: expected one of "
-        "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter\n" TRY(
-            "convert"));
-    check_message("$I convert model.yaml /nowhere/out.yaml --to kalibr", 1,
+        "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter|"
+        "lio-sam|fast-lio|dlio|glim|orb-slam3|gtsam|airsim|fusion\n" TRY("convert"));
+    check_message("$I convert model.yaml /nowhere/out.yaml --to navego", 1,
                   "imukit convert: error: /nowhere/out.yaml: the folder /nowhere does not exist; "
                   "create this folder, or choose another\n");
     assert_int_equal(sweep(), 3);
+}
+
+/* A filter needs a random walk: what the message says to add is what this model has, and helps. */
+static void test_missing_walk(void **state)
+{
+    (void)state;
+    put("b.yaml", "imukit: 1\ngyro:\n  noise: {angle_random_walk: 0.3 deg/sqrt(h), "
+                  "bias_instability: 5 deg/h}\n");
+    check_message("$I convert b.yaml out.yaml --to kalibr --rate 200Hz", 1,
+                  "imukit convert: error: b.yaml: gyro.noise.rate_random_walk: "
+                  "\"rate_random_walk\" (K) is not in the model, and kalibr needs it; add "
+                  "--bias-instability-tau TIME with the averaging time at which B as a walk is to "
+                  "be right\n");
+    assert_int_equal(access("out.yaml", F_OK), -1);
+    /* Largest error of all terms together from 10 s to 1000 s: with N = 8.727e-5 rad/s/sqrt(Hz) and
+     * B = 2.424e-5 rad/s the Allan variance at 1000 s is 7.62e-12 + 2.593e-10 = 2.669e-10
+     * (rad/s)^2; ten times the second and the first are 2.601e-9; sqrt(2.601e-9/2.669e-10) = 3.12.
+     */
+    check_message(
+        "$I convert b.yaml out.yaml --to kalibr --rate 200Hz --bias-instability-tau 100s", 0,
+        "imukit convert: note: gyro: bias instability (B) is in the random walk, K^2 + (6 "
+        "ln 2/pi) B^2/T, T = 100 s; its Allan deviation is right at T, 0.32 times B's at "
+        "T/10, 3.2 times at 10 T; all terms together are off by up to 212 % (at 1000 "
+        "s)\n");
+    put("bound.yaml", "imukit: 1\ngyro:\n  noise: {angle_random_walk: 0.3 deg/sqrt(h)}\n  "
+                      "evidence: {upper_bound: {noise.rate_random_walk: 1e-6 rad/s/sqrt(s)}}\n");
+    check_message(
+        "$I convert bound.yaml out.yaml --to orb-slam3 --rate 200Hz", 1,
+        "imukit convert: error: bound.yaml: gyro.noise.rate_random_walk: "
+        "\"rate_random_walk\" (K) is not in the model, and orb-slam3 needs it; add "
+        "--use-bounds (the largest K that the data allow)\nNext: imukit convert bound.yaml "
+        "out.yaml --to orb-slam3 --rate 200Hz --use-bounds\n");
+    assert_int_equal(run("$I convert bound.yaml out.yaml --to orb-slam3 --rate 200Hz --use-bounds"),
+                     0);
+    assert_int_equal(run("grep -q '^IMU.GyroWalk: 1.0e-6' out.yaml"), 0);
+    put("n.yaml", "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h)}}\n");
+    check_message("$I convert n.yaml out.yaml --to vins --rate 200Hz", 1,
+                  "imukit convert: error: n.yaml: gyro.noise.rate_random_walk: "
+                  "\"rate_random_walk\" (K) is not in the model, and vins needs it; nothing in the "
+                  "model stands for it: add it to the model, or identify it from a longer log\n");
+    /* FAST-LIO runs without, so the file is written. */
+    assert_int_equal(run("$I convert n.yaml out.yaml --to fast-lio --rate 200Hz"), 0);
+    check_contains(err, "warning: gyro: the model has no random walk (K)", "fast-lio");
+    assert_int_equal(sweep(), 4);
+}
+
+/* Options where they have no use. */
+static void test_walk_options(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *options, *says;
+        int code;
+    } wrong[] = {
+        {"o.yaml --to gazebo --rate 100Hz --use-bounds",
+         "the format gazebo has no random walk; "
+         "leave --use-bounds out",
+         1},
+        {"o.yaml --to dlio --bias-instability-tau 10s", "leave --bias-instability-tau out", 1},
+        {"o.json --to matlab --bias-instability-tau 10s", "has bias instability itself", 1},
+        {"o.yaml --to filter --rate 1Hz --bias-instability-tau 10s", "--flicker, --tau-from", 1},
+        {"o.yaml --from kalibr --use-bounds", "state the format with --to", 2},
+        {"o.yaml --to kalibr --bias-instability-tau 1e9s", "--bias-instability-tau", 2},
+        {"o.yaml --to kalibr --frame-rate 10Hz", "--frame-rate is for the format glim", 2},
+        {"o.json --to glim", "add --frame-rate 10Hz", 1},
+        {"o.yaml --to fast-lio", "add --rate 200Hz", 1},
+        {"o.yaml --to orb-slam3", "add --rate 200Hz", 1},
+    };
+    char line[300];
+    put("imu.yaml", "gyroscope_noise_density: 1e-4\ngyroscope_random_walk: 1e-6\n"
+                    "accelerometer_noise_density: 0.02\naccelerometer_random_walk: 1e-5\n");
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        snprintf(line, sizeof line, "$I convert imu.yaml %s", wrong[i].options);
+        assert_int_equal(run(line), wrong[i].code);
+        check_contains(err, wrong[i].says, wrong[i].options);
+    }
+    assert_int_equal(run("$I convert imu.yaml o.yaml --to lio-sam --use-bounds "
+                         "--bias-instability-tau 10s"),
+                     0);
+    check_contains(err, "--use-bounds changes nothing", "bounds");
+    check_contains(err, "--bias-instability-tau changes nothing", "tau");
+    assert_int_equal(sweep(), 2);
 }
 
 static void test_refused(void **state)
@@ -123,7 +203,15 @@ static void test_round_trip(void **state)
                    {"navego.m", "navego", "", true},
                    {"openvins.yaml", "openvins", "", false},
                    {"px4.params", "px4", "", true},
-                   {"vins.yaml", "vins", "--density two-sided", true}};
+                   {"vins.yaml", "vins", "--density two-sided", true},
+                   {"lio_sam.yaml", "lio-sam", "", true},
+                   {"fast_lio.yaml", "fast-lio", "--rate 200Hz", false},
+                   {"dlio.yaml", "dlio", "", false},
+                   {"glim.json", "glim", "--frame-rate 10Hz", false},
+                   {"orb_slam3.yaml", "orb-slam3", "--rate 200Hz", true},
+                   {"gtsam.txt", "gtsam", "", false},
+                   {"airsim.json", "airsim", "", false},
+                   {"fusion.txt", "fusion", "", false}};
     char line[1500];
     for (size_t i = 0; i < sizeof samples / sizeof samples[0]; i++) {
         const char *format = samples[i].format, *options = samples[i].options;
@@ -169,9 +257,10 @@ static void test_json(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_to_model), cmocka_unit_test(test_from_model),
-        cmocka_unit_test(test_refused),  cmocka_unit_test(test_round_trip),
-        cmocka_unit_test(test_json),     cmocka_unit_test(test_sensor_of_one),
+        cmocka_unit_test(test_to_model),     cmocka_unit_test(test_from_model),
+        cmocka_unit_test(test_refused),      cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_json),         cmocka_unit_test(test_sensor_of_one),
+        cmocka_unit_test(test_missing_walk), cmocka_unit_test(test_walk_options),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

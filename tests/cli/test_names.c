@@ -23,7 +23,7 @@ static const char *const lines[] = {
     "--json --report made.html",
     "$I compensate \"turns$N.csv\" \"$N.yaml\" -o made.csv --json",
     "$I compensate tactical --emit-c \"folder$N\" --json",
-    "$I convert \"$N.yaml\" made.yaml --to kalibr --rate 100Hz --json",
+    "$I convert \"$N.yaml\" made.yaml --to kalibr --rate 100Hz --use-bounds --json",
     "$I drift \"$N.yaml\" -d 10s -r 1Hz --json --report made.html --plot made.svg",
     "$I drift tactical -r 1Hz --motion \"turns$N.yaml\" -n 3 --json",
     "$I drift \"$N.h5\" --json",

@@ -108,7 +108,8 @@ awk 'BEGIN {
 for i in 1 2; do
     $IMUKIT drift unit.yaml --duration 10s --monte-carlo 8 --seed 3 --threads 1 --shard $i/2 -o shard$i.h5
 done >/dev/null
-for name in kalibr.yaml gazebo.sdf matlab.json px4.params ardupilot.param vins.yaml openvins.yaml navego.m gnss_ins_sim.json; do
+for name in kalibr.yaml gazebo.sdf matlab.json px4.params ardupilot.param vins.yaml openvins.yaml navego.m gnss_ins_sim.json \
+    lio_sam.yaml fast_lio.yaml dlio.yaml glim.json orb_slam3.yaml gtsam.txt airsim.json fusion.txt; do
     cp "$SOURCE/fuzz/corpus/parameters/$name" "from_$name"
 done
 awk 'BEGIN { print "tau [s],gyro_x [deg/h]"; for (t = 0.1; t < 500; t *= 2) print t "," sqrt(18 * 18 / t + 1) }' >curve.csv

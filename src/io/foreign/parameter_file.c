@@ -22,18 +22,43 @@ static const struct format {
     const char *name;
     imki_parameter_function *read, *write;
     bool has_several; /* a file may be of several sensors */
+    bool has_flicker; /* it has a place for bias instability */
+    imki_walk walk;
 } formats[] = {
-    [IMK_PARAMETERS_KALIBR] = {"kalibr", imki_kalibr_read, imki_kalibr_write, true},
-    [IMK_PARAMETERS_GAZEBO] = {"gazebo", imki_gazebo_read, imki_gazebo_write, true},
-    [IMK_PARAMETERS_MATLAB] = {"matlab", imki_matlab_read, imki_matlab_write, true},
+    [IMK_PARAMETERS_KALIBR] = {"kalibr", imki_kalibr_read, imki_kalibr_write, true, false,
+                               IMKI_WALK_NEEDED},
+    [IMK_PARAMETERS_GAZEBO] = {"gazebo", imki_gazebo_read, imki_gazebo_write, true, false,
+                               IMKI_WALK_NONE},
+    [IMK_PARAMETERS_MATLAB] = {"matlab", imki_matlab_read, imki_matlab_write, true, true,
+                               IMKI_WALK_HELD},
     [IMK_PARAMETERS_GNSS_INS_SIM] = {"gnss-ins-sim", imki_gnss_ins_sim_read,
-                                     imki_gnss_ins_sim_write, false},
-    [IMK_PARAMETERS_NAVEGO] = {"navego", imki_navego_read, imki_navego_write, true},
-    [IMK_PARAMETERS_OPENVINS] = {"openvins", imki_openvins_read, imki_openvins_write, false},
-    [IMK_PARAMETERS_VINS] = {"vins", imki_vins_read, imki_vins_write, false},
-    [IMK_PARAMETERS_PX4] = {"px4", imki_px4_read, imki_px4_write, true},
-    [IMK_PARAMETERS_ARDUPILOT] = {"ardupilot", imki_ardupilot_read, imki_ardupilot_write, true},
-    [IMK_PARAMETERS_FILTER] = {"filter", imki_filter_read, imki_filter_write, false},
+                                     imki_gnss_ins_sim_write, false, false, IMKI_WALK_NONE},
+    [IMK_PARAMETERS_NAVEGO] = {"navego", imki_navego_read, imki_navego_write, true, false,
+                               IMKI_WALK_HELD},
+    [IMK_PARAMETERS_OPENVINS] = {"openvins", imki_openvins_read, imki_openvins_write, false, false,
+                                 IMKI_WALK_NEEDED},
+    [IMK_PARAMETERS_VINS] = {"vins", imki_vins_read, imki_vins_write, false, false,
+                             IMKI_WALK_NEEDED},
+    [IMK_PARAMETERS_PX4] = {"px4", imki_px4_read, imki_px4_write, true, false, IMKI_WALK_NONE},
+    [IMK_PARAMETERS_ARDUPILOT] = {"ardupilot", imki_ardupilot_read, imki_ardupilot_write, true,
+                                  false, IMKI_WALK_NONE},
+    [IMK_PARAMETERS_FILTER] = {"filter", imki_filter_read, imki_filter_write, false, true,
+                               IMKI_WALK_HELD},
+    [IMK_PARAMETERS_LIO_SAM] = {"lio-sam", imki_lio_sam_read, imki_lio_sam_write, false, false,
+                                IMKI_WALK_NEEDED},
+    [IMK_PARAMETERS_FAST_LIO] = {"fast-lio", imki_fast_lio_read, imki_fast_lio_write, false, false,
+                                 IMKI_WALK_WANTED},
+    [IMK_PARAMETERS_DLIO] = {"dlio", imki_dlio_read, imki_dlio_write, false, false, IMKI_WALK_NONE},
+    [IMK_PARAMETERS_GLIM] = {"glim", imki_glim_read, imki_glim_write, false, false,
+                             IMKI_WALK_WANTED},
+    [IMK_PARAMETERS_ORB_SLAM3] = {"orb-slam3", imki_orb_slam3_read, imki_orb_slam3_write, false,
+                                  false, IMKI_WALK_NEEDED},
+    [IMK_PARAMETERS_GTSAM] = {"gtsam", imki_gtsam_read, imki_gtsam_write, false, false,
+                              IMKI_WALK_NEEDED},
+    [IMK_PARAMETERS_AIRSIM] = {"airsim", imki_airsim_read, imki_airsim_write, true, false,
+                               IMKI_WALK_HELD},
+    [IMK_PARAMETERS_FUSION] = {"fusion", imki_fusion_read, imki_fusion_write, false, false,
+                               IMKI_WALK_NONE},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
@@ -56,126 +81,6 @@ imk_parameter_settings imk_parameter_default(void)
 {
     return (imk_parameter_settings){.cookie = settings_cookie,
                                     .filter = imk_filter_noise_default()};
-}
-
-/* ---- recognition ----------------------------------------------------------------------------- */
-
-static bool has_any(const imk_document *document, int node, size_t count, const char *const *keys)
-{
-    for (size_t i = 0; i < count; i++)
-        if (imki_document_value(document, node, keys[i]) != IMKI_NONE)
-            return true;
-    return false;
-}
-
-/* By the keys of the root, or of one of its values. */
-static imk_parameter_format recognise_keys(const imk_document *document, int node)
-{
-    static const char *const vins[] = {"acc_n", "gyr_n", "acc_w", "gyr_w"};
-    static const char *const gnss[] = {"gyro_b", "gyro_arw", "gyro_b_stability", "accel_vrw"};
-    static const char *const matlab[] = {"Gyroscope", "Accelerometer"};
-    static const char *const openvins[] = {"Tw", "Ta", "Tg", "R_IMUtoGYRO", "R_IMUtoACC"};
-    static const char *const kalibr[] = {"gyroscopes", "accelerometers"};
-    static const char *const filter[] = {"imukit_filter"};
-    if (has_any(document, node, 1, filter))
-        return IMK_PARAMETERS_FILTER;
-    if (has_any(document, node, 4, vins))
-        return IMK_PARAMETERS_VINS;
-    if (has_any(document, node, 4, gnss))
-        return IMK_PARAMETERS_GNSS_INS_SIM;
-    if (has_any(document, node, 2, matlab))
-        return IMK_PARAMETERS_MATLAB;
-    if (has_any(document, node, 5, openvins))
-        return IMK_PARAMETERS_OPENVINS;
-    if (has_any(document, node, 2, kalibr) ||
-        has_any(document, node, IMKI_DENSITIES, imki_kalibr_noise_keys))
-        return IMK_PARAMETERS_KALIBR;
-    return IMK_PARAMETERS_UNKNOWN;
-}
-
-/* A tree that cannot be built has a fault to be told about; for that its words must do. */
-static imk_parameter_format recognise_words(const char *text)
-{
-    static const struct {
-        const char *word;
-        imk_parameter_format format;
-    } words[] = {{"imukit_filter", IMK_PARAMETERS_FILTER},
-                 {"acc_n:", IMK_PARAMETERS_VINS},
-                 {"gyr_n:", IMK_PARAMETERS_VINS},
-                 {"gyro_arw", IMK_PARAMETERS_GNSS_INS_SIM},
-                 {"\"Gyroscope\"", IMK_PARAMETERS_MATLAB},
-                 {"\"Accelerometer\"", IMK_PARAMETERS_MATLAB},
-                 {"R_IMUto", IMK_PARAMETERS_OPENVINS},
-                 {"gyroscope_noise_density", IMK_PARAMETERS_KALIBR},
-                 {"accelerometer_noise_density", IMK_PARAMETERS_KALIBR}};
-    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
-        if (strstr(text, words[i].word))
-            return words[i].format;
-    return IMK_PARAMETERS_UNKNOWN;
-}
-
-static imk_parameter_format recognise_tree(const char *text, size_t size)
-{
-    imk_parameter_settings settings = imk_parameter_default();
-    imki_parameters p = {.settings = &settings, .text = text, .size = size};
-    if (!imki_parameters_document(&p))
-        return recognise_words(text);
-    const imk_document *document = p.document;
-    imk_parameter_format format = IMK_PARAMETERS_UNKNOWN;
-    /* A model file has the last word about itself. */
-    if (imki_document_value(document, 0, "imukit") == IMKI_NONE) {
-        format = recognise_keys(document, 0);
-        for (int key = document->node[0].first;
-             key != IMKI_NONE && format == IMK_PARAMETERS_UNKNOWN;) {
-            format = recognise_keys(document, document->node[key].next);
-            key = document->node[document->node[key].next].next;
-        }
-    }
-    imk_document_free(p.document);
-    return format;
-}
-
-/* Does a word of the text begin so? */
-static bool has_word(const char *text, const char *beginning)
-{
-    for (const char *at = strstr(text, beginning); at; at = strstr(at + 1, beginning))
-        if (at == text || strchr(" \t\n,", at[-1]))
-            return true;
-    return false;
-}
-
-/* `name.field =`, with a field of NaveGo's. */
-static bool has_assignment(const char *text)
-{
-    static const char *const fields[] = {".arw",    ".vrw",    ".gb_sta",
-                                         ".ab_sta", ".gb_dyn", ".ab_dyn"};
-    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
-        for (const char *at = strstr(text, fields[i]); at; at = strstr(at + 1, fields[i])) {
-            const char *behind = at + strlen(fields[i]);
-            behind += strspn(behind, " \t");
-            if (behind[0] == '=' && behind[1] != '=')
-                return true;
-        }
-    return false;
-}
-
-static imk_parameter_format recognise(const char *text, size_t size)
-{
-    const char *first = text + strspn(text, " \t\r\n\xEF\xBB\xBF");
-    if (memchr(text, '\0', size))
-        return IMK_PARAMETERS_UNKNOWN;
-    if (*first == '<')
-        return strstr(text, "<imu") || strstr(text, "\"imu\"") ? IMK_PARAMETERS_GAZEBO
-                                                               : IMK_PARAMETERS_UNKNOWN;
-    imk_parameter_format format = recognise_tree(text, size);
-    if (format != IMK_PARAMETERS_UNKNOWN)
-        return format;
-    if (has_word(text, "CAL_GYRO") || has_word(text, "CAL_ACC") || has_word(text, "TC_G") ||
-        has_word(text, "TC_A"))
-        return IMK_PARAMETERS_PX4;
-    if (has_word(text, "INS_ACC") || has_word(text, "INS_GYR") || has_word(text, "INS_TCAL"))
-        return IMK_PARAMETERS_ARDUPILOT;
-    return has_assignment(text) ? IMK_PARAMETERS_NAVEGO : IMK_PARAMETERS_UNKNOWN;
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */
@@ -204,7 +109,7 @@ imk_status imk_parameter_format_detect(const char *path, imk_parameter_format *f
     if (status == IMK_ERROR_READ || status == IMK_ERROR_MEMORY ||
         (status == IMK_ERROR_OPEN && !is_missing))
         return status;
-    *format = status == IMK_OK ? recognise(text, size) : IMK_PARAMETERS_UNKNOWN;
+    *format = status == IMK_OK ? imki_parameter_recognise(text, size) : IMK_PARAMETERS_UNKNOWN;
     free(text);
     return IMK_OK;
 }
@@ -217,6 +122,13 @@ static imk_status check_settings(const imk_parameter_settings *settings, imk_err
     if (settings->rate != 0 && !(settings->rate >= 1e-9 && settings->rate <= 1e9))
         return imk_error_set(error, IMK_ERROR_RANGE, "rate", "",
                              "a sample rate from 1e-9 Hz to 1e9 Hz");
+    if (settings->frame_rate != 0 && !(settings->frame_rate >= 1e-9 && settings->frame_rate <= 1e9))
+        return imk_error_set(error, IMK_ERROR_RANGE, "frame_rate", "",
+                             "a frame rate from 1e-9 Hz to 1e9 Hz");
+    if (settings->bias_instability_tau != 0 &&
+        !(settings->bias_instability_tau >= 1e-8 && settings->bias_instability_tau <= 1e8))
+        return imk_error_set(error, IMK_ERROR_RANGE, "bias_instability_tau", "",
+                             "an averaging time from 1e-8 s to 1e8 s");
     if ((int)settings->format < 0 || (int)settings->format >= FORMATS)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "format", "", "one of the formats");
     return IMK_OK;
@@ -262,12 +174,11 @@ static imk_status parse_text(const char *text, size_t size, const imk_parameter_
     if (memchr(text, '\0', size))
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "", "a text file");
     if (format == IMK_PARAMETERS_UNKNOWN)
-        format = recognise(text, size);
+        format = imki_parameter_recognise(text, size);
     if (format == IMK_PARAMETERS_UNKNOWN)
-        return imk_error_set(
-            error, IMK_ERROR_FORMAT, "", "",
-            "a parameter file of kalibr, gazebo, matlab, gnss-ins-sim, navego, openvins, vins, "
-            "px4, ardupilot or filter (name the format with --from)");
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "",
+                             "a parameter file of a program that imukit convert --help lists (name "
+                             "the format with --from)");
     p.status = check_density(settings, format, error);
     if (p.status == IMK_OK)
         p.status = check_sensor(settings, format, error);
@@ -320,6 +231,28 @@ imk_status imk_parameters_read(const char *path, const imk_parameter_settings *s
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
+/* An option that the format has no use for was meant for another. */
+static imk_status check_walk(const imk_parameter_settings *settings, imk_error *error)
+{
+    const struct format *format = &formats[settings->format];
+    const bool tau = settings->bias_instability_tau > 0;
+    char found[96];
+    if (format->walk == IMKI_WALK_NONE && (tau || settings->use_bounds)) {
+        snprintf(found, sizeof found, "the format %s has no random walk", format->name);
+        return imk_error_set(error, IMK_ERROR_CONFLICT, tau ? "bias_instability_tau" : "use_bounds",
+                             found,
+                             tau ? "leave --bias-instability-tau out" : "leave --use-bounds out");
+    }
+    if (!tau || !format->has_flicker)
+        return IMK_OK;
+    snprintf(found, sizeof found, "the format %s has bias instability itself", format->name);
+    return imk_error_set(error, IMK_ERROR_CONFLICT, "bias_instability_tau", found,
+                         settings->format == IMK_PARAMETERS_FILTER
+                             ? "leave --bias-instability-tau out; --flicker, --tau-from and "
+                               "--tau-to say how it is approximated"
+                             : "leave --bias-instability-tau out");
+}
+
 static imk_status check_model(const imk_parameter_settings *settings, const imk_model *model,
                               imk_error *error)
 {
@@ -329,9 +262,15 @@ static imk_status check_model(const imk_parameter_settings *settings, const imk_
     if (status == IMK_OK)
         status = check_density(settings, settings->format, error);
     if (status == IMK_OK)
+        status = check_walk(settings, error);
+    if (status == IMK_OK)
         status = imk_model_validate(model, error);
     if (status != IMK_OK)
         return status;
+    if (!model->gyro.present && !model->accel.present && settings->format != IMK_PARAMETERS_FUSION)
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "model",
+                             "the model has neither gyros nor accelerometers",
+                             "a model of an IMU, or --to fusion for a magnetometer alone");
     const imk_triad *triads[2] = {&model->gyro, &model->accel};
     for (int i = 0; i < 2; i++)
         if (triads[i]->present && triads[i]->axis_count != 3)
@@ -354,12 +293,19 @@ imk_status imk_parameters_print(const char *path, const imk_parameter_settings *
                          .error = error,
                          .source = model,
                          .origin = {&model->gyro, &model->accel},
-                         .is_json = imk_has_ending(path, ".json")};
-    formats[settings->format].write(&p);
+                         .is_json = imk_has_ending(path, ".json"),
+                         .is_cpp = imk_has_ending(path, ".h") || imk_has_ending(path, ".hpp") ||
+                                   imk_has_ending(path, ".cpp")};
+    const struct format *format = &formats[settings->format];
+    imk_model *changed = NULL;
+    imki_walk_supply(&p, format->walk, format->name, &changed);
+    if (p.status == IMK_OK)
+        format->write(&p);
     if (p.out.failed)
         imki_parameter_refuse(&p, IMK_ERROR_MEMORY, "", "", "");
     if (p.status == IMK_OK)
-        imki_parameters_compare(&p, formats[settings->format].read, formats[settings->format].name);
+        imki_parameters_compare(&p, format->read, format->name);
+    free(changed);
     if (p.status != IMK_OK) {
         free(p.out.bytes);
         return p.status;

@@ -40,6 +40,8 @@ typedef struct imki_parameters {
     const imk_triad *origin[2]; /* its triads */
     imki_text out;              /* writing */
     bool is_json;               /* writing to a file whose name ends in .json */
+    bool is_cpp;                /* writing to a file whose name ends as those of C++ do */
+    size_t remarks;             /* writing: so many first notes say what stands for the walk */
 } imki_parameters;
 
 /* Fills p->model or p->out, or p->status says why not. */
@@ -52,11 +54,35 @@ imki_parameter_function imki_kalibr_read, imki_kalibr_write, imki_gazebo_read, i
     imki_matlab_read, imki_matlab_write, imki_gnss_ins_sim_read, imki_gnss_ins_sim_write,
     imki_navego_read, imki_navego_write, imki_openvins_read, imki_openvins_write, imki_vins_read,
     imki_vins_write, imki_px4_read, imki_px4_write, imki_ardupilot_read, imki_ardupilot_write,
-    imki_filter_read, imki_filter_write;
+    imki_filter_read, imki_filter_write, imki_lio_sam_read, imki_lio_sam_write, imki_fast_lio_read,
+    imki_fast_lio_write, imki_dlio_read, imki_dlio_write, imki_glim_read, imki_glim_write,
+    imki_orb_slam3_read, imki_orb_slam3_write, imki_gtsam_read, imki_gtsam_write, imki_airsim_read,
+    imki_airsim_write, imki_fusion_read, imki_fusion_write;
+
+/* The format of a text, which ends with a zero (parameter_recognise.c). */
+imk_parameter_format imki_parameter_recognise(const char *text, size_t size);
 
 /* Read back what was written and note what is not there (parameter_compare.c). `format` is the name
  * for the notes. Fails with IMK_ERROR_UNSUPPORTED when nothing came back. */
 void imki_parameters_compare(imki_parameters *p, imki_parameter_function *read, const char *format);
+
+/* ---- the random walk that filters need (parameter_walk.c) ------------------------------------ */
+
+/* What a format has for K. */
+typedef enum imki_walk {
+    IMKI_WALK_NONE,   /* nothing */
+    IMKI_WALK_HELD,   /* a place, which may be 0 */
+    IMKI_WALK_WANTED, /* the program runs without, but its bias then never changes, or by a default
+                       */
+    IMKI_WALK_NEEDED  /* the program does not run with 0 */
+} imki_walk;
+
+/* What is to be written for p->source: the same, or *changed with what stands for K by the settings
+ * use_bounds and bias_instability_tau, which the first p->remarks notes say. Fails when K is
+ * missing and the program needs it, or an option could supply it. The caller frees *changed. */
+void imki_walk_supply(imki_parameters *p, imki_walk walk, const char *format, imk_model **changed);
+/* Those notes as comments, in lines that begin with `prefix`. */
+void imki_text_remarks(imki_parameters *p, const char *prefix);
 
 /* A note: what was left out, or what was assumed. The same text is kept once. */
 void imki_note(imki_parameters *p, bool lost, const char *format, ...)
@@ -131,7 +157,8 @@ void imki_read_assignments(imki_parameters *p, imki_assignments *assignments);
 
 /* ---- YAML and JSON --------------------------------------------------------------------------- */
 
-/* The file as p->document. The first line %YAML:1.0 and the tags of OpenCV are taken for blanks.
+/* The file as p->document. The first line %YAML:1.0 and the tags of OpenCV, and in JSON the
+ * comments that nlohmann's reader can skip, are taken for blanks.
  * @return false when it has failed */
 bool imki_parameters_document(imki_parameters *p);
 
@@ -152,6 +179,14 @@ void imki_node_matrix(imki_parameters *p, int node, double matrix[3][3]);
 /* imki_node_numbers() and imki_accept() of a key's value; nothing happens when it is not there. */
 void imki_node_accept(imki_parameters *p, int mapping, const char *key, int kind,
                       imki_quantity quantity, imki_unit unit, double si[3]);
+/* The next mapping from node `from` on, anywhere in the tree, that has one of the keys; IMKI_NONE:
+ * there is no further. */
+int imki_mapping_with(const imk_document *document, int from, size_t count,
+                      const char *const *keys);
+/* The only one; fails when there is none or when there are several. */
+int imki_only_mapping_with(imki_parameters *p, size_t count, const char *const *keys);
+/* How many keys of a mapping are none of these, as a note. */
+void imki_note_others(imki_parameters *p, int mapping, size_t count, const char *const *known);
 bool imki_is_one_of(const char *name, size_t count, const char *const *names);
 /* A key that means nothing here: refused when it is a known one misspelt, else noted as lost. */
 void imki_foreign_key(imki_parameters *p, int key, size_t count, const char *const *known);
@@ -167,6 +202,13 @@ bool imki_is_identity(double matrix[3][3]);
  * axes by more than half a right angle or so, directions and scale factors. cross_axis becomes 0.
  * Fails with IMK_ERROR_RANGE when a row is nearly zero. */
 void imki_response_set(imki_parameters *p, imki_place place, imk_triad *triad, double matrix[3][3]);
+/* The matrix that takes readings back to the vector; fails with IMK_ERROR_UNSUPPORTED when the axes
+ * of the sensor (`name`) are not independent. */
+void imki_correction_of(imki_parameters *p, const imk_triad *triad, const char *name,
+                        double matrix[3][3]);
+/* The opposite of that: imki_response_set() of the inverse. */
+void imki_correction_set(imki_parameters *p, imki_place place, imk_triad *triad,
+                         double matrix[3][3]);
 /* matrix = lower * rotation, lower triangular with positive diagonal. False when the matrix is
  * singular or mirrors. */
 bool imki_lower_and_rotation(double matrix[3][3], double lower[3][3], double rotation[3][3]);
@@ -187,6 +229,25 @@ void imki_densities_read(imki_parameters *p, int mapping, const char *const keys
                          const imki_unit units[IMKI_DENSITIES]);
 /* One number for all axes: see imki_largest(). */
 double imki_density(imki_parameters *p, int index, const char *key);
+/* Which axis that was, for a comment: ", axis y (the largest)", or "" when they are alike. */
+const char *imki_axis_taken(const imki_parameters *p, int index);
+/* Lines "KEY: NUMBER  # UNIT" of the densities over `scale`, or of the squares of that. A sensor
+ * that the model lacks has no line, which is noted if the program needs both. */
+typedef struct imki_density_lines {
+    const char *const *keys;  /* of IMKI_DENSITIES */
+    const char *const *units; /* as the comment has them, "[rad/s/sqrt(Hz)]" */
+    const char *indent;
+    double scale;
+    bool squared, both_needed;
+    bool with_point; /* a number always has a decimal point */
+} imki_density_lines;
+void imki_densities_write(imki_parameters *p, const imki_density_lines *lines);
+/* imki_densities_read() of a file that may lack a key, which is noted. */
+void imki_densities_read_some(imki_parameters *p, int mapping,
+                              const char *const keys[IMKI_DENSITIES],
+                              const imki_unit units[IMKI_DENSITIES]);
+/* Standard deviations of variances. Fails where one is negative or not finite. */
+void imki_square_roots(imki_parameters *p, imki_place place, int count, double *values);
 /* For formats with one number for all axes: the largest, with a note when they differ. */
 double imki_largest(imki_parameters *p, const char *name, const imk_axes *axes);
 

@@ -36,7 +36,7 @@ static const char explanation[] =
     "# times the Allan deviation at 1 s of its slope +1/2. The flat part, bias instability B, has "
     "no\n"
     "# key: a filter that has to bridge a time tau covers it with\n"
-    "# random_walk = sqrt(K^2 + 6 ln 2/pi B^2/tau).\n";
+    "# random_walk = sqrt(K^2 + 6 ln 2/pi B^2/tau), which is --bias-instability-tau.\n";
 
 /* ---- the parts OpenVINS shares --------------------------------------------------------------- */
 
@@ -71,13 +71,16 @@ void imki_kalibr_noise_read(imki_parameters *p, int imu)
 
 void imki_kalibr_noise_write(imki_parameters *p, const char *indent)
 {
+    static const char *const units[IMKI_DENSITIES] = {
+        "[rad/s/sqrt(Hz)], two-sided", "[rad/s^2/sqrt(Hz)], two-sided",
+        "[m/s^2/sqrt(Hz)], two-sided", "[m/s^3/sqrt(Hz)], two-sided"};
+    imki_densities_write(
+        p, &(imki_density_lines){
+               .keys = imki_kalibr_noise_keys, .units = units, .indent = indent, .scale = 1});
     for (int i = 0; i < IMKI_DENSITIES; i++) {
-        if (!p->origin[i / 2]->present)
-            continue;
-        const double largest = imki_density(p, i, imki_kalibr_noise_keys[i]);
-        imki_text_add(&p->out, "%s%s: %s  # [%s], two-sided\n", indent, imki_kalibr_noise_keys[i],
-                      imki_shortest(largest).text, noise_units[i].name);
-        if (largest == 0)
+        const imk_noise *noise = &p->origin[i / 2]->noise;
+        if (p->origin[i / 2]->present &&
+            !imki_any(i % 2 == 0 ? noise->white.value : noise->random_walk.value))
             imki_note(p, true, "%s is 0, which kalibr and OpenVINS do not accept: set a value",
                       imki_kalibr_noise_keys[i]);
     }
@@ -283,7 +286,9 @@ void imki_kalibr_write(imki_parameters *p)
     bool lever_arms = accel->present && any_row(&accel->lever_arm);
     bool intrinsics = lever_arms || (gyro->present && any_row(&gyro->g_sensitivity)) ||
                       !imki_is_identity(response[0]) || !imki_is_identity(response[1]);
-    imki_text_add(&p->out, "%s%s", explanation, intrinsics ? "imu0:\n" : "");
+    imki_text_add(&p->out, "%s", explanation);
+    imki_text_remarks(p, "# ");
+    imki_text_add(&p->out, "%s", intrinsics ? "imu0:\n" : "");
     imki_kalibr_noise_write(p, intrinsics ? "  " : "");
     if (intrinsics && gyro->present)
         write_gyroscopes(p);

@@ -9,6 +9,8 @@
 
 #include "base/algebra/vector_internal.h"
 
+#include "imukit/attitude.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -71,6 +73,39 @@ void imki_response_set(imki_parameters *p, imki_place place, imk_triad *triad, d
                   "the matrices turn the axes by large angles: the model has them as directions");
 }
 
+static bool inverse_of(double matrix[3][3], double inverse[3][3])
+{
+    imk_matrix3 a, made;
+    for (int i = 0; i < 9; i++)
+        a.m[i / 3][i % 3] = matrix[i / 3][i % 3];
+    if (imk_matrix3_inverse(a, &made) != IMK_OK)
+        return false;
+    for (int i = 0; i < 9; i++)
+        inverse[i / 3][i % 3] = made.m[i / 3][i % 3] + 0.0; /* no negative zero */
+    return true;
+}
+
+void imki_correction_of(imki_parameters *p, const imk_triad *triad, const char *name,
+                        double matrix[3][3])
+{
+    double response[3][3];
+    imki_response_of(triad, response);
+    if (!inverse_of(response, matrix))
+        imki_parameter_refuse(p, IMK_ERROR_UNSUPPORTED, name,
+                              "the axes of the sensor are not independent of each other", "");
+}
+
+void imki_correction_set(imki_parameters *p, imki_place place, imk_triad *triad,
+                         double matrix[3][3])
+{
+    double response[3][3];
+    if (inverse_of(matrix, response))
+        imki_response_set(p, place, triad, response);
+    else
+        imki_parameter_refuse_at(p, place, IMK_ERROR_RANGE, "",
+                                 "a matrix near a rotation, which has an inverse");
+}
+
 /* Gram-Schmidt on the rows: exact where the matrix is lower triangular already. */
 bool imki_lower_and_rotation(double matrix[3][3], double lower[3][3], double rotation[3][3])
 {
@@ -92,79 +127,4 @@ bool imki_lower_and_rotation(double matrix[3][3], double lower[3][3], double rot
     double across[3];
     imki_cross3(rotation[0], rotation[1], across);
     return imki_dot3(rotation[2], across) > 0;
-}
-
-/* ---- noise ----------------------------------------------------------------------------------- */
-
-void imki_add_gauss_markov(imk_triad *triad, const double sigma[3], const double time[3])
-{
-    struct imk_gauss_markov_term term = {.sigma = {{0}, {0}}};
-    if (!imki_any(sigma))
-        return;
-    memcpy(term.sigma.value, sigma, 3 * sizeof sigma[0]);
-    for (int i = 0; i < 3; i++)
-        term.correlation_time.value[i] = sigma[i] == 0 ? 0 : time[i];
-    triad->noise.gauss_markov[triad->noise.gauss_markov_count++] = term;
-}
-
-void imki_first_gauss_markov(const imk_triad *triad, double sigma[3], double time[3])
-{
-    const struct imk_gauss_markov_term *term = &triad->noise.gauss_markov[0];
-    for (int i = 0; i < 3; i++) {
-        sigma[i] = triad->noise.gauss_markov_count > 0 ? term->sigma.value[i] : 0;
-        time[i] = triad->noise.gauss_markov_count > 0 ? term->correlation_time.value[i] : 0;
-    }
-}
-
-void imki_white_where_infinite(imki_parameters *p, imki_place place, imk_triad *triad, double rate,
-                               const char *program, double sigma[3], double time[3])
-{
-    for (int i = 0; i < 3; i++) {
-        if (sigma[i] != 0 && time[i] == 0)
-            imki_parameter_refuse_at(p, place, IMK_ERROR_RANGE, "0",
-                                     "a positive correlation time [s]");
-        if (sigma[i] == 0 || !isinf(time[i]))
-            continue;
-        if (!(rate > 0)) {
-            imki_parameter_refuse_at(
-                p, place, IMK_ERROR_KEY_MISSING,
-                "\"inf\" is white noise per sample, and the sampling rate is not known",
-                "add --rate 100Hz (samples per second)");
-            return;
-        }
-        double n = triad->noise.white.value[i];
-        triad->noise.white.value[i] = sqrt(n * n + sigma[i] * sigma[i] / rate);
-        sigma[i] = time[i] = 0;
-        imki_note(p, false,
-                  "%s: with an infinite correlation time %s draws a new drift for each sample: the "
-                  "drift is taken as white noise",
-                  place.field, program);
-    }
-}
-
-double imki_largest(imki_parameters *p, const char *name, const imk_axes *axes)
-{
-    double largest = fmax(axes->value[0], fmax(axes->value[1], axes->value[2]));
-    double smallest = fmin(axes->value[0], fmin(axes->value[1], axes->value[2]));
-    if (smallest != largest)
-        imki_note(p, true, "%s is one number for all axes: the largest of the three is written",
-                  name);
-    return largest;
-}
-
-void imki_densities_read(imki_parameters *p, int mapping, const char *const keys[IMKI_DENSITIES],
-                         const imki_unit units[IMKI_DENSITIES])
-{
-    for (int i = 0; i < IMKI_DENSITIES; i++) {
-        imk_noise *noise = &p->triad[i / 2]->noise;
-        const bool white = i % 2 == 0;
-        imki_node_accept(p, mapping, keys[i], i / 2, white ? IMKI_WHITE : IMKI_RANDOM_WALK,
-                         units[i], white ? noise->white.value : noise->random_walk.value);
-    }
-}
-
-double imki_density(imki_parameters *p, int index, const char *key)
-{
-    const imk_noise *noise = &p->origin[index / 2]->noise;
-    return imki_largest(p, key, index % 2 == 0 ? &noise->white : &noise->random_walk);
 }

@@ -104,6 +104,7 @@ void imki_openvins_write(imki_parameters *p)
                            "R_IMUtoACC f\nimu0:\n  T_i_b:\n    - [1.0, 0.0, 0.0, 0.0]\n    - [0.0, "
                            "1.0, 0.0, 0.0]\n    - [0.0, 0.0, 1.0, 0.0]\n    - [0.0, 0.0, 0.0, "
                            "1.0]\n");
+    imki_text_remarks(p, "  # ");
     imki_kalibr_noise_write(p, "  ");
     imki_text_add(&p->out, "  rostopic: /imu0\n  time_offset: 0.0\n");
     if (p->settings->rate > 0)
@@ -155,27 +156,23 @@ void imki_vins_read(imki_parameters *p)
 {
     const double scale = vins_scale(p);
     imki_unit units[IMKI_DENSITIES];
-    int others = 0;
     if (p->status != IMK_OK || !imki_parameters_document(p))
         return;
     for (int i = 0; i < IMKI_DENSITIES; i++)
         units[i] = (imki_unit){vins_units[p->settings->rate <= 0][i], scale};
     imki_densities_read(p, 0, vins_keys, units);
-    for (int key = p->document->node[0].first; key != IMKI_NONE; key = imki_key_after(p, key))
-        others += !imki_is_one_of(p->document->node[key].text, IMKI_DENSITIES, vins_keys);
-    if (others > 0)
-        imki_note(p, true, "%d other keys (cameras, estimator) are not parameters of the IMU",
-                  others);
+    imki_note_others(p, 0, IMKI_DENSITIES, vins_keys);
 }
 
 void imki_vins_write(imki_parameters *p)
 {
     const double scale = vins_scale(p);
     imki_text_add(&p->out, "%%YAML:1.0\n");
+    imki_text_remarks(p, "# ");
     for (int i = 0; i < IMKI_DENSITIES; i++) {
         const bool present = p->origin[i / 2]->present;
         const double value = present ? imki_density(p, i, vins_keys[i]) / scale : 0;
-        imki_text_add(&p->out, "%s: %s  # [%s]\n", vins_keys[i], imki_shortest(value).text,
-                      vins_units[p->settings->rate <= 0][i]);
+        imki_text_add(&p->out, "%s: %s  # [%s]%s\n", vins_keys[i], imki_shortest(value).text,
+                      vins_units[p->settings->rate <= 0][i], present ? imki_axis_taken(p, i) : "");
     }
 }

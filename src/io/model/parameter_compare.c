@@ -133,7 +133,8 @@ static void compare_timing(imki_parameters *p, const char *format, const imk_tim
 static bool holds_matrices(imk_parameter_format format)
 {
     return format == IMK_PARAMETERS_KALIBR || format == IMK_PARAMETERS_MATLAB ||
-           format == IMK_PARAMETERS_OPENVINS;
+           format == IMK_PARAMETERS_OPENVINS || format == IMK_PARAMETERS_DLIO ||
+           format == IMK_PARAMETERS_FUSION;
 }
 
 void imki_parameters_compare(imki_parameters *p, imki_parameter_function *read, const char *format)
@@ -161,11 +162,15 @@ void imki_parameters_compare(imki_parameters *p, imki_parameter_function *read, 
     if (p->status == IMK_OK && holds_matrices(p->settings->format)) {
         bring_together(p, &source->gyro);
         bring_together(p, &source->accel);
+        if (back->mag.present)
+            bring_together(p, &source->mag);
     }
     if (p->status == IMK_OK) {
         kept = compare_triads(p, format, IMK_GYRO, &source->gyro, &back->gyro, &had);
         kept += compare_triads(p, format, IMK_ACCEL, &source->accel, &back->accel, &had);
-        if (source->mag.present)
+        if (back->mag.present)
+            kept += compare_triads(p, format, IMK_MAG, &source->mag, &back->mag, &had);
+        else if (source->mag.present)
             imki_note(p, true, "mag is not held by the format %s", format);
         compare_timing(p, format, &source->timing);
     }

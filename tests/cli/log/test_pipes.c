@@ -31,7 +31,7 @@ static const struct {
     {"turns.yaml", "$I drift tactical -r 1Hz --motion @ -n 3 -o runs.h5 && cat runs.h5"},
     {"unit.yaml", "$I drift @ -d 10s -r 1Hz --json"},
     {"unit.yaml", "$I grade @ --json"},
-    {"unit.yaml", "$I convert @ - --to kalibr --rate 100Hz"},
+    {"unit.yaml", "$I convert @ - --to kalibr --rate 100Hz --use-bounds"},
     {"kalibr.yaml", "$I convert @ - --to gazebo --rate 100Hz"},
     {"unit.yaml", "$I convert @ z.json && cat z.json && rm z.json"},
     {"kalibr.yaml", "$I convert @ z.yaml --rate 100Hz && cat z.yaml && rm z.yaml"},
@@ -70,7 +70,7 @@ static int make_inputs(void **state)
                ">second.csv && cp second.csv "
                "one.csv && $I convert log.csv log.npy && rm log.npy.columns && "
                "$I identify log.csv -o unit.yaml >/dev/null && "
-               "$I convert unit.yaml kalibr.yaml --to kalibr --rate 100Hz && "
+               "$I convert unit.yaml kalibr.yaml --to kalibr --rate 100Hz --use-bounds && "
                "$I physics rate_gyro --show >design.yaml && "
                "{ echo 'gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],accel_x [m/s^2],accel_y "
                "[m/s^2],accel_z [m/s^2]'; yes 0,0,1,0,0,-9.8 | head -99; } >rates.csv");
@@ -239,7 +239,7 @@ static void test_without_end(void **state)
         "$I evaluate /dev/zero",
         "$I simulate tactical --rate 10Hz --motion /dev/zero",
         "$I simulate tactical --rate 10Hz -d 10s --temperature /dev/zero",
-        "$I convert /dev/zero - --to kalibr --rate 100Hz",
+        "$I convert /dev/zero - --to kalibr --rate 100Hz --use-bounds",
     };
     char line[300];
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {

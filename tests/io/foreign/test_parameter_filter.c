@@ -163,6 +163,8 @@ static void test_kalibr_comments(void **state)
 {
     (void)state;
     fill_model();
+    for (int axis = 0; axis < 3; axis++)
+        model.accel.noise.random_walk.value[axis] = 1e-5;
     imk_parameter_settings settings = settings_at(200);
     settings.format = IMK_PARAMETERS_KALIBR;
     char *text = print("imu.yaml", &settings);
