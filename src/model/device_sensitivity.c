@@ -236,7 +236,7 @@ imk_status imk_device_sensitivity_find(const char *part, imk_count_kind kind, co
 {
     imk_error own;
     request r = {.kind = kind, .range = range, .error = error ? error : &own};
-    if (!part || (int)kind < 0 || kind >= IMK_COUNT_KINDS)
+    if (!part || (unsigned)kind >= IMK_COUNT_KINDS)
         return imk_error_set(r.error, IMK_ERROR_ARGUMENT, part ? "kind" : "device", NULL, NULL);
     read_part(part, &r);
     const char *rows = name_of_rows(r.part);

@@ -87,7 +87,7 @@ imk_status imk_count_scale_parse(const char *begin, const char *end, imk_dimensi
     begin = imki_skip_blanks(begin, end);
     while (end > begin && (end[-1] == ' ' || end[-1] == '\t'))
         end--;
-    char whole[2 * sizeof w.text]; /* imki_copy_text() shortens it between characters */
+    char whole[2 * sizeof w.text] = ""; /* imki_copy_text() shortens it between characters */
     size_t length = (size_t)(end - begin);
     if (length >= sizeof whole)
         length = sizeof whole - 1;
