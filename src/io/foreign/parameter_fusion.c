@@ -75,8 +75,9 @@ static bool read_list(const char *at, int count, double *values)
             at++;
             continue;
         }
-        if (!opened || !imki_number(at, digits_end, &values[i++]))
+        if (!opened || !imki_number(at, digits_end, &values[i]))
             return false;
+        i++;
         at = end;
     }
     at += strspn(at, " \t\r\n,}");
