@@ -53,7 +53,10 @@ IMK_API const char *imk_log_formats_text(const char *last, bool written, size_t 
 typedef struct imk_log_settings {
     uint32_t cookie;
     const char *columns; /**< names for a file without header: "time,gyro_x,gyro_y,…"; "-" skips */
-    /** Units for columns without a unit in the header. */
+    /** Columns by the names that the file has for them: "gyro_x=wx,time=stamp [us]"; the others are
+     * not read. NULL: the names tell what they are. */
+    const char *map;
+    /** Units for columns without a unit in the file. One that contradicts the file is refused. */
     const char *gyro_unit, *accel_unit, *time_unit, *temperature_unit;
     /** Name of the format (imk_log_format.name) for files that do not tell it; NULL: by content. */
     const char *format;
@@ -136,12 +139,6 @@ IMK_API size_t imk_log_column_count(const imk_log_reader *reader);
 IMK_API const imk_log_column *imk_log_column_get(const imk_log_reader *reader, size_t index);
 /** Index of the column of a quantity and axis, or -1. */
 IMK_API int imk_log_column_find(const imk_log_reader *reader, imk_quantity quantity, int axis);
-/** Does a header state a unit that the settings state otherwise? The header's is used.
- *  @param column  the first such column, NULL if there is none
- *  @return the unit of the settings, which was not used; NULL: it was, or there is none */
-IMK_API const char *imk_log_unit_ignored(const imk_log_reader *reader,
-                                         const imk_log_settings *settings, imk_quantity quantity,
-                                         const imk_log_column **column);
 /** Bytes of the file consumed and its size (0 when not known), for progress. */
 IMK_API void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint64_t *size);
 
