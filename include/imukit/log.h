@@ -101,22 +101,26 @@ typedef struct imk_log_reader imk_log_reader;
  *  The memory needed does not depend on the length of the log; a line beyond 1 MiB is refused.
  *
  *  Names, in any case: time (t, timestamp); gyro_, dtheta_, accel_ (acc_), dvel_ followed by x, y,
- *  z or 0 … 7; temperature (temp). Units follow the name in brackets or parentheses. Counts are
- *  allowed for any sensor. Other columns are kept as IMK_QUANTITY_OTHER: in SI if their unit is
+ *  z or 0 … 7; temperature (temp); and what people and programs write for these (docs/logs.md).
+ *  Units follow the name in brackets or parentheses, or at its end. Counts are allowed for any
+ *  sensor. Texts may be UTF-8, UTF-16 and of any line ends; numbers may have decimal commas, times
+ *  be dates. Rows that cannot be read are left out and counted, as long as they are few: up to 3 or
+ *  1 %. Other columns are kept as IMK_QUANTITY_OTHER: in SI if their unit is
  *  known, else unchanged. If the first cell that is not blank, within 16 MiB, holds a text, the
  *  column is a label column; a blank cell is then the empty text.
  *
  *  The message of every error ends with the exact option to add.
  *  @return IMK_ERROR_OPEN, _READ, _WRITE (of the temporary copy), _EMPTY, _FORMAT, _COMPRESSED,
  *          _COLUMN, _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, _NAME_UNKNOWN (the
- * format; the topic, or several and none chosen), _UNSUPPORTED (a pipe, of a format that needs a
- *          file; a format that is only known by name), … */
+ *          format; the topic, or several and none chosen), _CONFLICT (a unit of the settings and
+ *          that of the file), _UNSUPPORTED (a pipe, of a format that needs a file; a format that is
+ *          only known by name), … */
 IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settings,
                                 imk_log_reader **reader, imk_error *error);
 
 /** The sensors of a log, without choosing one: as imk_log_open(), but settings.topic and .instance
  *  are left aside. Only what stands at the beginning, at the end and in an index of the file is
- * read.
+ *  read.
  *  @param stream  receives up to `most`, those that can be read first
  *  @param count   receives their number, which may be above `most`
  *  @return errors of imk_log_open(), but for a log in which there is nothing that can be read */
@@ -149,9 +153,11 @@ IMK_API void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint
  *  next row; if the step is not positive: the last positive one). An empty cell is NaN. If rows
  *  before an error could be read, the next call returns the error.
  *  @param rows  how many were read; 0 at the end
- *  @return IMK_ERROR_SYNTAX (a cell that is not a number), IMK_ERROR_COLUMN (a row with another
- *          number of cells), IMK_ERROR_COMPRESSED, IMK_ERROR_READ, with line and column. A last
- *          line that was cut in the middle is an error, not a row. */
+ *  @return IMK_ERROR_SYNTAX (cells that are not numbers), IMK_ERROR_COLUMN (rows with another
+ *          number of cells), where they are more than few; IMK_ERROR_CONFLICT (the rate of the
+ *          settings and the times), IMK_ERROR_COMPRESSED, IMK_ERROR_READ, with line and column of
+ *          the first. A last line without an end is left out, unless it has the decimals of the
+ *          others: it may be cut within a number. */
 IMK_API imk_status imk_log_read(imk_log_reader *reader, size_t max_rows, double *const *columns,
                                 size_t *rows, imk_error *error);
 
@@ -250,6 +256,9 @@ typedef struct imk_log_sink {
     bool fixed; /**< write with IMK_LOG_FIXED; `decimals` holds for columns for which the job states
                    none */
     int decimals;
+    /** Write as imu0/data.csv of the EuRoC data set: its header, times in whole nanoseconds. The
+     * columns must be time, gyro_x … gyro_z, accel_x … accel_z; `fixed` does not hold. */
+    bool euroc;
     imk_log_writer *writer; /**< its own */
     imk_record_source labels;
 } imk_log_sink;

@@ -48,6 +48,10 @@ static const struct message {
     {"unused_axis",
      "{record}: an axis is missing, and {name}, which looks like {other}, is not used; " NAME_IT},
     {"unused_sensor", "{record}: no column is read as {other}; {name} may be that: " NAME_IT},
+    {"gravity_free",
+     "{record}: {name}: by its name gravity is taken out of it, so that it is not what an "
+     "accelerometer measures: not used; if gravity is in it, name it so with --map, such as "
+     "accel_x=NAME"},
     {"unknown_channels", "no column is read as one of a gyro or an accelerometer: the columns are "
                          "analysed as they are, and belong to no model"},
     {"one_row", "there is only one row; record minutes to hours at rest"},

@@ -3,7 +3,7 @@
  * times, intervals, increments, findings. */
 #define _POSIX_C_SOURCE 200809L
 #include "base/text_internal.h"
-#include "log_dialects_internal.h"
+#include "csv/log_dialects_internal.h"
 #include "log_reader_internal.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "imukit/decimal.h"
 
 #include "base/text_internal.h"
-#include "log_reader_internal.h"
+#include "io/log/log_reader_internal.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,11 +4,11 @@
 #ifndef IMUKIT_LOG_CSV_INTERNAL_H
 #define IMUKIT_LOG_CSV_INTERNAL_H
 
+#include "io/log/log_columns_internal.h"
+#include "io/log/log_reader_internal.h"
+#include "io/log/log_stamps_internal.h"
 #include "log_cells_internal.h"
-#include "log_columns_internal.h"
 #include "log_dialects_internal.h"
-#include "log_reader_internal.h"
-#include "log_stamps_internal.h"
 
 /* The header of a table, whose text is kept. */
 typedef struct imki_csv_header {

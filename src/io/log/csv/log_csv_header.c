@@ -206,6 +206,24 @@ static bool is_comment_header(const char *comment, imki_log_piece row, char *sep
     return false;
 }
 
+/* A row with texts in it, below a comment that is its header. */
+static bool is_row_below(const imki_csv_comment *comment, imki_log_piece line,
+                         const imki_log_piece *cells, size_t count)
+{
+    imki_log_cell named[IMK_LOG_COLUMNS_MAX];
+    imki_log_piece names;
+    char separator = imki_log_find_separator(line.begin, line.end);
+    bool number = false, known = false;
+    double value;
+    imki_log_cells_name(cells, count, named);
+    for (size_t i = 0; i < count; i++) {
+        number = number || imki_log_piece_is_number(cells[i], &value);
+        known = known || named[i].name.kind;
+    }
+    return number && !known && comment->text &&
+           is_comment_header(comment->text, line, &separator, &names);
+}
+
 static imk_status refuse_headless(size_t count, imk_error *error)
 {
     static const char sensors[] = "gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z";
@@ -424,7 +442,7 @@ static imk_status read_names(imk_log_reader *reader, imki_csv_comment *comment, 
     if (count > IMK_LOG_COLUMNS_MAX)
         return imk_error_set(error, IMK_ERROR_COLUMN, "", "the log has more than 64 columns",
                              "at most 64 columns");
-    if (!is_row(cells, count))
+    if (!is_row(cells, count) && !is_row_below(comment, line, cells, count))
         return name_header(reader, line, separator, is_gcsv ? &scales : NULL, error);
     status = name_row(reader, line, comment, separator, error);
     text->next = line.begin; /* it is the first row */
