@@ -199,7 +199,7 @@ static bool is_figure(char c)
 static bool turns(const char *name, const char *at)
 {
     return at > name && is_upper(*at) &&
-           (is_small(at[-1]) || (is_upper(at[-1]) && is_small(at[1])));
+           (is_small(at[-1]) || is_figure(at[-1]) || (is_upper(at[-1]) && is_small(at[1])));
 }
 
 static void end_word(words *w, size_t *length)

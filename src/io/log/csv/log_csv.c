@@ -98,7 +98,8 @@ static imk_status check_commas(const imki_csv *csv, char separator, imk_error *e
     const size_t due = csv->header.count;
     bool all = csv->look.rows > 0 && separator == ',';
     for (size_t row = 0; row < csv->look.rows; row++)
-        all = all && csv->look.count[row] > due && csv->look.count[row] <= 2 * due;
+        all = all && csv->look.count[row] > due && csv->look.count[row] <= 2 * due &&
+              (due == IMK_LOG_COLUMNS_MAX || csv->look.text[row][due][0] != '\0');
     if (!all)
         return IMK_OK;
     char found[96];
