@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* libFuzzer entry: any bytes as a log, read in pieces whose length the bytes choose.
- * Reads: src/io/log/log_reader.c src/io/log/log_format.c src/io/log/log_csv.c
- * src/io/log/log_columns.c src/io/log/log_row.c src/io/log/log_cells.c src/io/log/log_cells_avx2.c
- * src/io/log/log_text.c src/io/log/log_findings.c */
+ * Reads: src/io/log/log_reader.c src/io/log/log_format.c src/io/log/log_columns.c
+ * src/io/log/log_names.c src/io/log/log_map.c src/io/log/log_missing.c src/io/log/log_stamps.c
+ * src/io/log/log_decode.c src/io/log/log_rate.c src/io/log/log_text.c
+ * src/io/log/csv/log_csv.c src/io/log/csv/log_csv_header.c src/io/log/csv/log_csv_look.c
+ * src/io/log/csv/log_csv_rows.c src/io/log/csv/log_csv_sensors.c src/io/log/csv/log_dialects.c
+ * src/io/log/csv/log_row.c src/io/log/csv/log_cells.c src/io/log/csv/log_cells_avx2.c */
 #include "harness.h"
 
 #include "imukit/log.h"
@@ -24,6 +27,13 @@ static imk_log_settings settings_of(uint32_t choice)
         settings.axes = "right-forward-up";
     if (choice & 32)
         settings.columns = "time,gyro_x,-";
+    const uint32_t other = choice * UINT32_C(2654435761) >> 28;
+    if (other == 0)
+        settings.map = "gyro_x=wx,time=t [ms]";
+    if (other == 1)
+        settings.topic = "imu0";
+    if (other == 2 || other == 3)
+        settings.format = other == 2 ? "psins" : "kitti";
     return settings;
 }
 

@@ -3,8 +3,8 @@
  * of names of a model's parameters. Lines in this order: columns, unit of the gyros, of the
  * accelerometers, of time, of temperature, axes. An empty line, and one that is not there, is an
  * option not given.
- * Reads: src/io/log/log_axes.c src/io/log/log_columns.c src/io/log/log_csv.c
- * src/model/model_parameter.c */
+ * Reads: src/io/log/log_axes.c src/io/log/log_columns.c src/io/log/csv/log_csv.c
+ * src/io/log/csv/log_csv_header.c src/model/model_parameter.c */
 #include "harness.h"
 
 #include "imukit/log.h"

@@ -81,7 +81,6 @@ int session_read(const calibrate_options *o, const imk_calibrate_log_settings *s
                              : -1;
         return code < 0 ? command_log_error(&error, path) : code;
     }
-    log_input_note_units(reader, &file);
     job_progress shown = job_progress_begin(path);
     const imk_job job = job_progress_job(&shown, NULL);
     const imk_record_source source = imk_log_source(reader);

@@ -19,7 +19,7 @@ static const char formats[] =
     "fast-lio|dlio|glim|orb-slam3|gtsam|airsim|fusion";
 static const char target_formats[] =
     "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter|lio-sam|"
-    "fast-lio|dlio|glim|orb-slam3|gtsam|airsim|fusion";
+    "fast-lio|dlio|glim|orb-slam3|gtsam|airsim|fusion|euroc";
 
 #define AT(field) offsetof(parameter_options, field)
 
@@ -27,7 +27,8 @@ const option parameter_option_table[PARAMETER_OPTIONS] = {
     {"from", OPTION_CHOICE, AT(from), .value = "FORMAT", .choices = formats,
      .help = "format of the parameter file read; default: recognised by its content"},
     {"to", OPTION_CHOICE, AT(to), .value = "FORMAT", .choices = target_formats,
-     .help = "format of the parameter file written; default: a model file"},
+     .help = "format of the parameter file written; default: a model file; euroc: write a log as "
+             "the data.csv of a sensor in the EuRoC data set"},
     {"density", OPTION_CHOICE, AT(density), .value = "SIDES",
      .choices = "as-the-program|two-sided|one-sided",
      .help = "meaning of a number per sqrt(Hz), where the format leaves it open (vins, matlab)"},
@@ -71,7 +72,7 @@ int parameters_wanted(const parameter_options *options, const char *in, bool mod
 {
     imk_error error;
     imk_parameter_format format;
-    *wanted = options->from > 0 || options->to > 0;
+    *wanted = options->from > 0 || (options->to > 0 && options->to != CONVERT_TO_EUROC);
     const bool named = only_parameters(in) || imk_is_script_name(in);
     if (*wanted || !(named || model_due)) /* logs are not looked into */
         return -1;

@@ -5,8 +5,11 @@
 
 #include "shell/command.h"
 
+/* The choice of --to that is a format of logs; it stands behind the others. */
+enum { CONVERT_TO_EUROC = 11 };
+
 typedef struct parameter_options {
-    int from, to; /* imk_parameter_format; 0: not given */
+    int from, to; /* imk_parameter_format; 0: not given; or CONVERT_TO_EUROC */
     int density;  /* imk_density; 0: not given */
     const char *sensor;
     bool json;

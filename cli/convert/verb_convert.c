@@ -124,6 +124,18 @@ static int tell(const char *in, const imk_findings *findings, imk_status status,
     return log_input_tell(in, findings, status, error);
 }
 
+/* Columns and units are those of the format. */
+static int set_up_euroc(convert_options *o, imk_log_sink *written)
+{
+    if (o->to.select || o->decimals.given || o->to.gyro_unit.scale > 0 ||
+        o->to.accel_unit.scale > 0 || o->to.time_unit.scale > 0)
+        return command_misused("--to euroc has its columns and units: leave --select, --decimals "
+                               "and the options for units out");
+    o->to.select = "time,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z";
+    written->euroc = true;
+    return -1;
+}
+
 static int convert_log(convert_options *o, const char *in, const char *out)
 {
     imk_error error;
@@ -132,6 +144,8 @@ static int convert_log(convert_options *o, const char *in, const char *out)
     imk_log_sink written = {
         .path = out, .fixed = o->decimals.given, .decimals = (int)o->decimals.value};
     int code = set_up(o);
+    if (code < 0 && o->parameters.to == CONVERT_TO_EUROC)
+        code = set_up_euroc(o, &written);
     if (code < 0)
         code = log_input_open(&o->log, in, false, &reader);
     if (code >= 0)
@@ -178,6 +192,8 @@ static int run(int count, char **words)
                                "other; use identify or simulate",
                                operands[0], from_model ? "model" : "log", operands[1],
                                to_model ? "model" : "log");
+    if (from_model && o.parameters.to == CONVERT_TO_EUROC)
+        return command_misused("--to euroc is for logs, and %s is a model", operands[0]);
     if (from_model && (o.to_point || o.to.gravity_free))
         return command_misused("--to-point and --gravity-free are for logs, and %s is a model",
                                operands[0]);
@@ -199,7 +215,8 @@ const verb convert_verb = {
           "a model becomes a parameter file of another program; without --to a parameter file "
           "becomes a model"}},
     .description =
-        "A log is .csv (also .gz, .zst){ or logs}; - is standard input or output, as CSV. "
+        "A log is .csv (also .gz, .zst){ or logs}; - is standard input or output, as CSV; with "
+        "--to euroc it is written as in the EuRoC data set. "
         "Increments become rates. Values keep their units unless an option changes them.\n\nA "
         "model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
         "Parameter files of kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, "

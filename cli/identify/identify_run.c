@@ -50,7 +50,6 @@ int identify_run(const identify_options *o, const char *path, const imk_executor
     *log = NULL;
     if (imk_log_open(path, &reading, &reader, &error) != IMK_OK)
         return command_log_error(&error, path);
-    log_input_note_units(reader, &reading);
     job_progress shown = job_progress_begin(path);
     const imk_job job = job_progress_job(&shown, executor);
     const imk_record_source source = imk_log_source(reader);

@@ -22,14 +22,17 @@ const option log_input_options[LOG_INPUT_OPTIONS] = {
     {"columns", OPTION_TEXT, AT(file.columns), .value = "NAMES",
      .help = "names of the columns of a log without header, such as time,gyro_x,gyro_y,gyro_z; - "
              "skips a column"},
+    {"map", OPTION_TEXT, AT(file.map), .value = "NAMES",
+     .help = "columns by the names that the log has for them, such as gyro_x=wx,time=stamp; other "
+             "columns are not read"},
     {"gyro-unit", OPTION_TEXT, AT(file.gyro_unit), .value = "UNIT",
-     .help = "unit of the gyro columns where the header has none, such as deg/s"},
+     .help = "unit of the gyro columns where the file has none, such as deg/s"},
     {"accel-unit", OPTION_TEXT, AT(file.accel_unit), .value = "UNIT",
-     .help = "unit of the accelerometer columns where the header has none, such as g"},
+     .help = "unit of the accelerometer columns where the file has none, such as g"},
     {"time-unit", OPTION_TEXT, AT(file.time_unit), .value = "UNIT",
-     .help = "unit of the time column where the header has none, such as us"},
+     .help = "unit of the time column where the file has none, such as us"},
     {"temperature-unit", OPTION_TEXT, AT(file.temperature_unit), .value = "UNIT",
-     .help = "unit of the temperature column where the header has none, such as degC"},
+     .help = "unit of the temperature column where the file has none, such as degC"},
     {"axes", OPTION_TEXT, AT(file.axes), .value = "NAMES",
      .help = "directions of the log's x, y and z axes, such as right-forward-up; they are mapped "
              "to forward-right-down"},
@@ -72,24 +75,6 @@ int log_input_check(const log_input *input)
     return -1;
 }
 
-void log_input_note_units(const imk_log_reader *reader, const imk_log_settings *settings)
-{
-    static const struct {
-        imk_quantity quantity;
-        const char *option;
-    } units[] = {{IMK_QUANTITY_ANGULAR_RATE, "gyro-unit"},
-                 {IMK_QUANTITY_SPECIFIC_FORCE, "accel-unit"},
-                 {IMK_QUANTITY_TIME, "time-unit"},
-                 {IMK_QUANTITY_TEMPERATURE, "temperature-unit"}};
-    for (size_t k = 0; k < sizeof units / sizeof units[0]; k++) {
-        const imk_log_column *column;
-        const char *unit = imk_log_unit_ignored(reader, settings, units[k].quantity, &column);
-        if (unit)
-            command_note("--%s %s is not used: the header says %s [%s], and its unit holds",
-                         units[k].option, unit, column->name, column->unit.text);
-    }
-}
-
 int log_input_open(const log_input *input, const char *path, bool again, imk_log_reader **reader)
 {
     imk_error error;
@@ -97,8 +82,6 @@ int log_input_open(const log_input *input, const char *path, bool again, imk_log
     settings.reopened = again;
     if (imk_log_open(path, &settings, reader, &error) != IMK_OK)
         return command_log_error(&error, path);
-    if (!again)
-        log_input_note_units(*reader, &settings);
     return -1;
 }
 

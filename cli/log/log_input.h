@@ -18,7 +18,7 @@ typedef struct log_input {
 } log_input;
 
 /* How to read a file, and last what analysis does about gaps, which conversion leaves out. */
-enum { LOG_INPUT_OPTIONS = 18, LOG_FORMAT_OPTIONS = LOG_INPUT_OPTIONS - 1 };
+enum { LOG_INPUT_OPTIONS = 19, LOG_FORMAT_OPTIONS = LOG_INPUT_OPTIONS - 1 };
 /* Without those of a sensor's ranges, for a verb that has them of its own. */
 enum { LOG_RANGELESS_OPTIONS = LOG_FORMAT_OPTIONS - 2 };
 extern const option log_input_options[LOG_INPUT_OPTIONS];
@@ -37,9 +37,6 @@ int log_input_load(const log_input *input, const char *path, imk_even_record *ch
 int log_input_check(const log_input *input);
 /* Open a log for a job. @param again  the job may rewind it. @return -1 or the exit code */
 int log_input_open(const log_input *input, const char *path, bool again, imk_log_reader **reader);
-/* An option about units that the header makes needless changes nothing; it is told. Of a log opened
- * in another way. */
-void log_input_note_units(const imk_log_reader *reader, const imk_log_settings *settings);
 /* What a job found, and why it failed: warnings and the error to standard error.
  * @return -1, or the exit code of a status that is no success */
 int log_input_tell(const char *path, const imk_findings *findings, imk_status status,

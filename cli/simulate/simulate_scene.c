@@ -23,8 +23,9 @@ static int table_error(imk_error *error, const char *path)
         snprintf(error->expected, sizeof error->expected,
                  "a header with names and units, time [s] among them");
     } else if (strncmp(error->expected, "add --", 6) == 0 && !lacks_rate(error)) {
-        char options[76];
-        snprintf(options, sizeof options, "%.75s", error->expected + 4);
+        char options[300];
+        snprintf(options, sizeof options, "%.299s", error->expected + 4);
+        options[strcspn(options, "(")] = '\0';
         snprintf(error->expected, sizeof error->expected, "imukit convert %.60s NEW.csv %s", path,
                  options);
     }

@@ -53,7 +53,10 @@ IMK_API const char *imk_log_formats_text(const char *last, bool written, size_t 
 typedef struct imk_log_settings {
     uint32_t cookie;
     const char *columns; /**< names for a file without header: "time,gyro_x,gyro_y,…"; "-" skips */
-    /** Units for columns without a unit in the header. */
+    /** Columns by the names that the file has for them: "gyro_x=wx,time=stamp [us]"; the others are
+     * not read. NULL: the names tell what they are. */
+    const char *map;
+    /** Units for columns without a unit in the file. One that contradicts the file is refused. */
     const char *gyro_unit, *accel_unit, *time_unit, *temperature_unit;
     /** Name of the format (imk_log_format.name) for files that do not tell it; NULL: by content. */
     const char *format;
@@ -91,16 +94,20 @@ typedef struct imk_log_reader imk_log_reader;
  *  The memory needed does not depend on the length of the log; a line beyond 1 MiB is refused.
  *
  *  Names, in any case: time (t, timestamp); gyro_, dtheta_, accel_ (acc_), dvel_ followed by x, y,
- *  z or 0 … 7; temperature (temp). Units follow the name in brackets or parentheses. Counts are
- *  allowed for any sensor. Other columns are kept as IMK_QUANTITY_OTHER: in SI if their unit is
+ *  z or 0 … 7; temperature (temp); and what people and programs write for these (docs/logs.md).
+ *  Units follow the name in brackets or parentheses, or at its end. Counts are allowed for any
+ *  sensor. Texts may be UTF-8, UTF-16 and of any line ends; numbers may have decimal commas, times
+ *  be dates. Rows that cannot be read are left out and counted, as long as they are few: up to 3 or
+ *  1 %. Other columns are kept as IMK_QUANTITY_OTHER: in SI if their unit is
  *  known, else unchanged. If the first cell that is not blank, within 16 MiB, holds a text, the
  *  column is a label column; a blank cell is then the empty text.
  *
  *  The message of every error ends with the exact option to add.
  *  @return IMK_ERROR_OPEN, _READ, _WRITE (of the temporary copy), _EMPTY, _FORMAT, _COMPRESSED,
  *          _COLUMN, _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, _NAME_UNKNOWN (the
- *          format; the topic, or several and none chosen), _UNSUPPORTED (a pipe, of a format that
- *          needs a file; a format that is only known by name), … */
+ *          format; the topic, or several and none chosen), _CONFLICT (a unit of the settings and
+ *          that of the file), _UNSUPPORTED (a pipe, of a format that needs a file; a format that is
+ *          only known by name), … */
 IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settings,
                                 imk_log_reader **reader, imk_error *error);
 
@@ -134,12 +141,6 @@ IMK_API size_t imk_log_column_count(const imk_log_reader *reader);
 IMK_API const imk_log_column *imk_log_column_get(const imk_log_reader *reader, size_t index);
 /** Index of the column of a quantity and axis, or -1. */
 IMK_API int imk_log_column_find(const imk_log_reader *reader, imk_quantity quantity, int axis);
-/** Does a header state a unit that the settings state otherwise? The header's is used.
- *  @param column  the first such column, NULL if there is none
- *  @return the unit of the settings, which was not used; NULL: it was, or there is none */
-IMK_API const char *imk_log_unit_ignored(const imk_log_reader *reader,
-                                         const imk_log_settings *settings, imk_quantity quantity,
-                                         const imk_log_column **column);
 /** Bytes of the file consumed and its size (0 when not known), for progress. */
 IMK_API void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint64_t *size);
 
@@ -150,9 +151,11 @@ IMK_API void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint
  *  next row; if the step is not positive: the last positive one). An empty cell is NaN. If rows
  *  before an error could be read, the next call returns the error.
  *  @param rows  how many were read; 0 at the end
- *  @return IMK_ERROR_SYNTAX (a cell that is not a number), IMK_ERROR_COLUMN (a row with another
- *          number of cells), IMK_ERROR_COMPRESSED, IMK_ERROR_READ, with line and column. A last
- *          line that was cut in the middle is an error, not a row. */
+ *  @return IMK_ERROR_SYNTAX (cells that are not numbers), IMK_ERROR_COLUMN (rows with another
+ *          number of cells), where they are more than few; IMK_ERROR_CONFLICT (the rate of the
+ *          settings and the times), IMK_ERROR_COMPRESSED, IMK_ERROR_READ, with line and column of
+ *          the first. A last line without an end is left out, unless it has the decimals of the
+ *          others: it may be cut within a number. */
 IMK_API imk_status imk_log_read(imk_log_reader *reader, size_t max_rows, double *const *columns,
                                 size_t *rows, imk_error *error);
 
@@ -251,6 +254,9 @@ typedef struct imk_log_sink {
     bool fixed; /**< write with IMK_LOG_FIXED; `decimals` holds for columns for which the job states
                    none */
     int decimals;
+    /** Write as imu0/data.csv of the EuRoC data set: its header, times in whole nanoseconds. The
+     * columns must be time, gyro_x … gyro_z, accel_x … accel_z; `fixed` does not hold. */
+    bool euroc;
     imk_log_writer *writer; /**< its own */
     imk_record_source labels;
 } imk_log_sink;

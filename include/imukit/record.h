@@ -96,6 +96,9 @@ typedef struct imk_log_findings {
     /** Rows, messages or blocks of the file that cannot be read and are left out; the place of the
      *  first, as rows before it. */
     size_t damaged, first_damaged;
+    size_t damaged_line, damaged_column; /**< of the first in a text, from 1; 0: not known */
+    size_t headers, first_header;        /**< lines between the rows of a text that are its header
+                                            once more; rows before the first */
     bool cut_short; /**< the file ends within a row, message or block, which is left out */
 } imk_log_findings;
 

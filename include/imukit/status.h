@@ -87,7 +87,7 @@ typedef struct imk_error {
     size_t column;      /**< in that line, from 1 */
     char field[96];     /**< dotted path of the parameter, or name of the column or file */
     char found[96];     /**< the text found, shortened */
-    char expected[160]; /**< what is expected there, or what to do: the end of a message */
+    char expected[512]; /**< what is expected there, or what to do: the end of a message */
 } imk_error;
 
 /** Name of a status ("IMK_ERROR_RANGE"); "unknown" for a value not in the list. */

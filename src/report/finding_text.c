@@ -48,6 +48,10 @@ static const struct message {
     {"unused_axis",
      "{record}: an axis is missing, and {name}, which looks like {other}, is not used; " NAME_IT},
     {"unused_sensor", "{record}: no column is read as {other}; {name} may be that: " NAME_IT},
+    {"gravity_free",
+     "{record}: {name}: by its name gravity is taken out of it, so that it is not what an "
+     "accelerometer measures: not used; if gravity is in it, name it so with --map, such as "
+     "accel_x=NAME"},
     {"unknown_channels", "no column is read as one of a gyro or an accelerometer: the columns are "
                          "analysed as they are, and belong to no model"},
     {"one_row", "there is only one row; record minutes to hours at rest"},
@@ -73,10 +77,15 @@ static const struct message {
     {"not_finite", "{0} row{0s} with a value that is not a finite number or beyond 1e60, first in "
                    "row {1}: counted as missing"},
     /* record_check.c */
-    {"damaged", "{0} row{0s}, messages or blocks of the file cannot be read and are left out, the "
-                "first behind row {2} of {1}"},
-    {"cut_short", "the file ends in the middle of a row, message or block; what is whole, {0} "
-                  "row{0s}, is used; if the file is a copy, copy it again"},
+    {"damaged",
+     "{0} row{0s}{3!}, messages or blocks of the file{?} cannot be read and are left out, the "
+     "first behind row {2} of {1}{3?} (line {3}{?}{4?}, column {4}{?}{3?}){?}"},
+    {"headers", "the header stands {0} more time{0s} between the rows, first behind row {1}, as "
+                "where files were put together: left out; give such parts as logs of their own if "
+                "they are not one record"},
+    {"cut_short", "the file ends in the middle of a row, message or block, or its last line has no "
+                  "end and may be cut; what is whole, {0} row{0s}, is used; if the file is a copy, "
+                  "copy it again"},
     {"unordered", UNORDERED},
     {"stamps:unordered", UNORDERED},
     {"missing",

@@ -20,17 +20,18 @@ static const struct bad_log {
     {"head -1 good.csv >b.csv", "b.csv", "b.csv: the log has a header but no rows; expected"},
     {"head -2 good.csv >b.csv", "b.csv",
      "b.csv: there is only one row; record minutes to hours at rest\n"},
-    {"sed '1s/ .deg.*//' good.csv >b.csv", "b.csv", "add --gyro-unit deg/s"},
+    {"sed '1s/ .deg.*//' good.csv >b.csv", "b.csv",
+     "add --gyro-unit UNIT (UNIT is the unit of the log: deg/s, rad/s, count, …)\nNext: imukit "},
     {"cut -d, -f2 good.csv >b.csv", "b.csv",
-     "add --rate 100Hz (samples per second)\nNext: imukit "},
+     "add --rate RATE (samples per second, as in --rate 100Hz)\nNext: imukit "},
     {"sed 1d good.csv >b.csv", "b.csv", "add --columns "},
     {"sed '1s/deg.s/g/' good.csv >b.csv", "b.csv", "expected an angular rate, such as deg/h"},
     {"sed '1s/deg.s/dge\\/s/' good.csv >b.csv", "b.csv", "dge"},
     {"sed '2,$s/,.*/,5/' good.csv >b.csv", "b.csv",
      "b.csv: column gyro_x is constant in all 1000 rows: there is no noise to "},
-    {"sed '500s/,.*/,abc/' good.csv >b.csv", "b.csv",
+    {"sed '500,$s/,.*/,abc/' good.csv >b.csv", "b.csv",
      "b.csv:500:6: gyro_x: \"abc\" cannot be read; expected "},
-    {"sed '500s/,.*//' good.csv >b.csv", "b.csv", "b.csv:500: "},
+    {"sed '500,$s/,.*//' good.csv >b.csv", "b.csv", "b.csv:500: "},
     {"gzip -c good.csv | head -c 3000 >b.csv.gz", "b.csv.gz",
      "b.csv.gz: the gzip data is cut short"},
     {"head -c 9000 /dev/urandom >b.csv", "b.csv", "not a text log"},
@@ -299,8 +300,9 @@ static void test_next_command(void **state)
     assert_int_equal(run("cut -d, -f2 good.csv >'b 1.csv'"), 0);
     check_message(
         "$I allan 'b 1.csv' --tau=1s", 1,
-        "imukit allan: error: b 1.csv:1: time: the log has no time column; add --rate 100Hz "
-        "(samples per second)\nNext: imukit allan 'b 1.csv' --tau=1s --rate 100Hz\n");
+        "imukit allan: error: b 1.csv:1: time: the log has no time column; add --rate RATE "
+        "(samples per second, as in --rate 100Hz)\nNext: imukit allan 'b 1.csv' --tau=1s --rate "
+        "RATE\n");
     assert_int_equal(run("$I allan 'b 1.csv' --tau=1s --rate 100Hz"), 0);
     sweep();
 }

@@ -336,18 +336,17 @@ static void test_unit_of_the_header(void **state)
 {
     (void)state;
     make_log("");
-    identify_log("--accel-unit g --gyro-unit deg/s --time-unit s");
-    check_contains(
-        err, "--accel-unit g is not used: the header says accel_x [m/s^2], and its unit holds",
-        err);
+    identify_log("--gyro-unit deg/s --time-unit s");
     assert_null(strstr(err, "--gyro-unit"));
-    assert_null(strstr(err, "--time-unit"));
-    assert_int_equal(run("$I allan log.csv --time-unit ms"), 0);
-    check_contains(err, "--time-unit ms is not used: the header says time [s]", err);
+    assert_int_equal(run("$I identify log.csv --accel-unit g"), 1);
+    check_contains(
+        err, "--accel-unit g does not agree with the file, which says accel_x [m/s^2]; leave", err);
+    assert_int_equal(run("$I allan log.csv --time-unit ms"), 1);
+    check_contains(err, "--time-unit ms does not agree with the file, which says time [s]", err);
     assert_int_equal(run("sed '1s/ .m.s.2.//g' log.csv > none.csv && $I identify none.csv "
                          "--accel-unit m/s^2"),
                      0);
-    assert_null(strstr(err, "not used"));
+    assert_null(strstr(err, "agree"));
     sweep();
 }
 

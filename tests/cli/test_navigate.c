@@ -67,10 +67,9 @@ static void test_refusals(void **state)
                   "380 m\"\n" TRY("navigate"));
     check_message(
         "$I navigate rest.csv " PLACE " --align 10s --rate 1e-5Hz", 1,
-        "imukit navigate: warning: --rate says 1e-05 Hz, but the time column 10 Hz; "
-        "--rate is used, and every result follows from it: check which one is "
-        "right\nimukit navigate: error: rest.csv: no sample falls into --align 10s: the rows "
-        "are 100000 s apart; align for longer, or correct --rate or the timestamps\n");
+        "imukit navigate: error: rest.csv: --rate 1e-05Hz does not agree with the time column, by "
+        "which the rate is 10 Hz; leave --rate out; if the times are wrong, leave their column "
+        "out, with --map or with - in its place in --columns\n");
     check_message("$I navigate rest.csv --align 10s --position '95 deg, 10 deg, 0 m'", 2,
                   "imukit navigate: error: --position \"95 deg, 10 deg, 0 m\": the latitude must "
                   "be within 90 deg, the longitude within 360 deg\n" TRY("navigate"));

@@ -50,27 +50,9 @@ static const imk_finding *told(const char *name, imk_allan_log **a)
 static void test_a_missing_axis_is_a_warning(void **state)
 {
     (void)state;
-    static const char *const names[] = {"gryo_y",
-                                        "gyo_y",
-                                        "giro_y",
-                                        "gyro y",
-                                        "gyroy",
-                                        "GyroY",
-                                        "gyr_y",
-                                        "-gyro_y",
-                                        "+gyro_y [deg/s]",
-                                        "gyro.y",
-                                        "Gyro-Y",
-                                        "ygyro",
-                                        "wy [rad/s]",
-                                        "gyro_raw_y",
-                                        "gyro 1",
-                                        "gyroscope_y",
-                                        "imu0_gyro_y",
-                                        "omega_y",
-                                        "angular_velocity_y",
-                                        "angularVelocity.y [rad/s]",
-                                        "gyro_y_filtered"};
+    static const char *const names[] = {
+        "gryo_y",     "gyo_y",         "giro_y",          "-gyro_y",    "+gyro_y [deg/s]",
+        "gyro_y_raw", "raw_gyro_y_lp", "gyro_y_filtered", "gyro_y_2nd", "Gryo-Y"};
     for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
         imk_allan_log *a;
         const imk_finding *f = told(names[k], &a);
@@ -85,7 +67,8 @@ static void test_a_missing_axis_is_a_warning(void **state)
 static void test_others_are_notes(void **state)
 {
     (void)state;
-    static const char *const names[] = {"gryo_x", "-gyro_z", "gyro_x_raw", "xgyro", "ax", "wz"};
+    static const char *const names[] = {"gryo_x", "-gyro_z", "gyro_x_raw", "gyro_raw_x",
+                                        "imu0_gyro_z"};
     for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
         imk_allan_log *a;
         const imk_finding *f = told(names[k], &a);

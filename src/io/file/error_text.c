@@ -116,7 +116,8 @@ static bool is_clause(const char *text)
 
 static void add_found(message *s, const imk_error *error, const wording *w)
 {
-    if (w->quoted && error->found[0] != '"') {
+    const bool sentence = error->status == IMK_ERROR_NAME_UNKNOWN && is_clause(error->found);
+    if (w->quoted && error->found[0] != '"' && !sentence) {
         add(s, "\"");
         add(s, error->found);
         add(s, "\" ");

@@ -1,81 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a column is, from its name and unit. Nothing is guessed: a missing unit or rate is refused
- * with the option that states it. */
-#include "log_reader_internal.h"
+/* What the columns of a log are, from their names and units. Nothing is guessed: what is missing is
+ * refused with the options that state it (log_missing.c), and an option that contradicts the file
+ * is refused, too. */
+#include "log_columns_internal.h"
 
 #include "base/text_internal.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-/* Kinds of columns with a meaning here. */
-typedef struct kind {
-    const char *prefix; /* in lower case; with axis: followed by x, y, z or 0 … 7 */
-    const char *name;   /* as it is called from here on */
-    imk_quantity quantity;
-    bool has_axis, increment;
-    const char *unit;   /* one of the right dimension */
-    const char *option; /* states the unit; NULL: without a unit it is a column like any other */
-    const char *due;    /* end of the message when it is missing */
-} kind;
-
-static const kind kinds[] = {{"time", "time", IMK_QUANTITY_TIME, false, false, "s", "--time-unit",
-                              "add --time-unit s (or ms, us, ns)"},
-                             {"timestamp", "time", IMK_QUANTITY_TIME, false, false, "s",
-                              "--time-unit", "add --time-unit s (or ms, us, ns)"},
-                             {"t", "time", IMK_QUANTITY_TIME, false, false, "s", "--time-unit",
-                              "add --time-unit s (or ms, us, ns)"},
-                             {"gyro_", "gyro_", IMK_QUANTITY_ANGULAR_RATE, true, false, "rad/s",
-                              "--gyro-unit", "add --gyro-unit deg/s (or rad/s, deg/h, count)"},
-                             {"dtheta_", "dtheta_", IMK_QUANTITY_ANGULAR_RATE, true, true, "rad",
-                              "--gyro-unit", "add --gyro-unit arcsec (or rad, deg, count)"},
-                             {"accel_", "accel_", IMK_QUANTITY_SPECIFIC_FORCE, true, false, "m/s^2",
-                              "--accel-unit", "add --accel-unit g (or m/s^2, mg, count)"},
-                             {"acc_", "accel_", IMK_QUANTITY_SPECIFIC_FORCE, true, false, "m/s^2",
-                              "--accel-unit", "add --accel-unit g (or m/s^2, mg, count)"},
-                             {"dvel_", "dvel_", IMK_QUANTITY_SPECIFIC_FORCE, true, true, "m/s",
-                              "--accel-unit", "add --accel-unit m/s (or count)"},
-                             {"mag_", "mag_", IMK_QUANTITY_MAGNETIC, true, false, "T", NULL, NULL},
-                             {"temperature", "temperature", IMK_QUANTITY_TEMPERATURE, false, false,
-                              "K", "--temperature-unit", "add --temperature-unit degC"},
-                             {"temp", "temperature", IMK_QUANTITY_TEMPERATURE, false, false, "K",
-                              "--temperature-unit", "add --temperature-unit degC"}};
-
-static bool begins_with(const char *text, const char *prefix)
-{
-    for (; *prefix; prefix++, text++)
-        if (imki_lower(*text) != *prefix)
-            return false;
-    return true;
-}
-
-static int axis_of(const char *text)
-{
-    if (text[0] == '\0' || text[1] != '\0')
-        return -1;
-    const char c = imki_lower(text[0]);
-    if (c >= 'x' && c <= 'z')
-        return c - 'x';
-    return c >= '0' && c <= '7' ? c - '0' : -1;
-}
-
-/* The kind of a name, or NULL. */
-static const kind *find_kind(const char *name, int *axis)
-{
-    *axis = -1;
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-        const size_t length = strlen(kinds[i].prefix);
-        if (!begins_with(name, kinds[i].prefix))
-            continue;
-        if (!kinds[i].has_axis && name[length] == '\0')
-            return &kinds[i];
-        *axis = kinds[i].has_axis ? axis_of(name + length) : -1;
-        if (*axis >= 0)
-            return &kinds[i];
-    }
-    return NULL;
-}
 
 static void trim(imki_log_piece *piece)
 {
@@ -85,7 +18,7 @@ static void trim(imki_log_piece *piece)
         piece->end--;
 }
 
-static void copy_piece(char *target, size_t size, imki_log_piece piece)
+void imki_log_piece_copy(char *target, size_t size, imki_log_piece piece)
 {
     size_t length = (size_t)(piece.end - piece.begin);
     if (length >= size) {
@@ -97,8 +30,13 @@ static void copy_piece(char *target, size_t size, imki_log_piece piece)
     target[length] = '\0';
 }
 
-/* "gyro_x [deg/s]": divide at the first bracket that closes at the end. */
-static void split_unit(imki_log_piece *name, imki_log_piece *unit)
+/* "[0]" is an index and no unit. */
+static bool is_index(imki_log_piece inside)
+{
+    return inside.end - inside.begin == 1 && *inside.begin >= '0' && *inside.begin <= '9';
+}
+
+void imki_log_unit_split(imki_log_piece *name, imki_log_piece *unit)
 {
     trim(name);
     *unit = (imki_log_piece){name->end, name->end};
@@ -106,7 +44,7 @@ static void split_unit(imki_log_piece *name, imki_log_piece *unit)
         return;
     const char open = name->end[-1] == ']' ? '[' : '(';
     for (const char *p = name->begin; p < name->end; p++)
-        if (*p == open) {
+        if (*p == open && !is_index((imki_log_piece){p + 1, name->end - 1})) {
             *unit = (imki_log_piece){p + 1, name->end - 1};
             name->end = p;
             break;
@@ -115,7 +53,7 @@ static void split_unit(imki_log_piece *name, imki_log_piece *unit)
     trim(unit);
 }
 
-static const char *unit_setting(imk_quantity quantity, const imk_log_settings *settings)
+const char *imki_log_unit_setting(imk_quantity quantity, const imk_log_settings *settings)
 {
     switch (quantity) {
     case IMK_QUANTITY_TIME:
@@ -133,42 +71,17 @@ static const char *unit_setting(imk_quantity quantity, const imk_log_settings *s
     return NULL;
 }
 
-/* Is this the unit of the text? */
-static bool is_unit(const imk_unit *unit, const char *text)
+bool imki_log_unit_fits(const imki_log_kind *kind, const imk_unit *unit)
 {
-    imk_unit other;
-    return imk_unit_parse(text, text + strlen(text), &other, NULL) == IMK_OK &&
-           imk_dimension_equal(unit->dimension, other.dimension) &&
-           fabs(unit->scale - other.scale) <= 1e-12 * fabs(other.scale) &&
-           unit->offset == other.offset;
-}
-
-const char *imk_log_unit_ignored(const imk_log_reader *reader, const imk_log_settings *settings,
-                                 imk_quantity quantity, const imk_log_column **column)
-{
-    const char *text = unit_setting(quantity, settings);
-    for (size_t i = 0; text && i < reader->layout.column_count; i++) {
-        *column = &reader->layout.column[i];
-        if ((*column)->quantity == quantity && !is_unit(&(*column)->unit, text))
-            return text;
-    }
-    *column = NULL;
-    return NULL;
-}
-
-static bool has_dimension(const kind *k, const imk_unit *unit)
-{
-    return imk_dimension_equal(unit->dimension, imk_unit_of(k->unit).dimension) ||
-           (k->quantity != IMK_QUANTITY_TIME &&
+    return imk_dimension_equal(unit->dimension, imk_unit_of(kind->unit).dimension) ||
+           (kind->quantity != IMK_QUANTITY_TIME &&
             imk_dimension_equal(unit->dimension, imk_unit_of("count").dimension));
 }
 
-static imk_status check_dimension(const kind *k, const imk_unit *unit, const char *field,
-                                  imk_error *error)
+imk_status imki_log_unit_refuse(const imki_log_kind *kind, const imk_unit *unit, const char *field,
+                                imk_error *error)
 {
-    if (has_dimension(k, unit))
-        return IMK_OK;
-    const imk_dimension due = imk_unit_of(k->unit).dimension;
+    const imk_dimension due = imk_unit_of(kind->unit).dimension;
     char found[96], expected[160];
     snprintf(found, sizeof found, "\"%.47s\" is %.40s", unit->text,
              imk_dimension_name(unit->dimension));
@@ -177,45 +90,169 @@ static imk_status check_dimension(const kind *k, const imk_unit *unit, const cha
     return imk_error_set(error, IMK_ERROR_DIMENSION, field, found, expected);
 }
 
-imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *settings,
-                                imk_log_column *column, imk_error *error)
+/* A column without meaning here: in SI if its unit is known. */
+static void make_other(imki_log_cell *cell)
 {
-    imki_log_piece unit;
-    split_unit(&name, &unit);
+    imk_log_column *column = &cell->column;
+    cell->name.kind = NULL;
     *column = (imk_log_column){.axis = -1};
-    copy_piece(column->name, sizeof column->name, name);
-    const kind *k = find_kind(column->name, &column->axis);
-    if (!k || (!k->option && unit.begin == unit.end)) {
-        column->axis = -1;
-        if (imk_unit_parse(unit.begin, unit.end, &column->unit, NULL) != IMK_OK) {
-            column->unit = (imk_unit){.scale = 1.0};
-            copy_piece(column->unit.text, sizeof column->unit.text, unit);
-        }
-        return IMK_OK;
+    imki_log_piece_copy(column->name, sizeof column->name, cell->text);
+    if (imk_unit_parse(cell->unit.begin, cell->unit.end, &column->unit, NULL) != IMK_OK) {
+        column->unit = (imk_unit){.scale = 1.0};
+        imki_log_piece_copy(column->unit.text, sizeof column->unit.text, cell->unit);
     }
-    char suffix[2] = {k->has_axis ? imki_lower(column->name[strlen(column->name) - 1]) : '\0',
-                      '\0'};
-    snprintf(column->name, sizeof column->name, "%s%s", k->name, suffix);
-    column->quantity = k->quantity;
-    column->increment = k->increment;
-    const char *field = column->name;
-    if (unit.begin == unit.end) {
-        const char *setting = unit_setting(k->quantity, settings);
-        if (!setting && imki_log_counted(settings, k->quantity))
-            setting = "count";
-        if (!setting)
-            return imk_error_set(error, IMK_ERROR_UNIT_MISSING, "", column->name, k->due);
-        unit = (imki_log_piece){setting, setting + strlen(setting)};
-        field = k->option;
-        column->unit_origin = IMK_UNIT_OF_SETTINGS;
+}
+
+/* The unit of a known column: beside its name, at the end of the name, or of the settings. The
+ * gauss of an acceleration is a capital g. */
+static imk_status find_unit(imki_log_cell *cell, const imk_log_settings *settings, bool dates,
+                            imk_error *error)
+{
+    const imki_log_kind *kind = cell->name.kind;
+    imki_log_piece unit = cell->unit;
+    const char *text = kind->quantity == IMK_QUANTITY_TIME && dates ? "s"
+                       : unit.begin < unit.end                      ? NULL
+                                                                    : cell->name.unit;
+    cell->column.unit_origin = IMK_UNIT_OF_HEADER;
+    if (unit.begin == unit.end && !text) {
+        text = imki_log_unit_setting(kind->quantity, settings);
+        if (!text && imki_log_counted(settings, kind->quantity))
+            text = "count";
+        cell->column.unit_origin = IMK_UNIT_OF_SETTINGS;
+        cell->lacks_unit = !text;
+        if (!text)
+            return IMK_OK;
     }
-    const imk_status status = imk_unit_parse(unit.begin, unit.end, &column->unit, error);
-    if (status != IMK_OK) {
-        if (error)
-            snprintf(error->field, sizeof error->field, "%s", field);
+    if (kind->quantity == IMK_QUANTITY_SPECIFIC_FORCE && unit.end - unit.begin == 1 &&
+        *unit.begin == 'G')
+        text = "g";
+    if (text)
+        unit = (imki_log_piece){text, text + strlen(text)};
+    const imk_status status = imk_unit_parse(unit.begin, unit.end, &cell->column.unit, error);
+    if (status != IMK_OK && error)
+        snprintf(error->field, sizeof error->field, "%s",
+                 cell->column.unit_origin == IMK_UNIT_OF_SETTINGS ? kind->option
+                                                                  : cell->column.name);
+    return status;
+}
+
+/* Name and unit of a column whose kind is known. */
+static imk_status make_known(imki_log_cell *cell, const imk_log_settings *settings, bool dates,
+                             imk_error *error)
+{
+    const imki_log_name *name = &cell->name;
+    imk_log_column *column = &cell->column;
+    *column = (imk_log_column){
+        .quantity = name->kind->quantity, .axis = name->axis, .increment = name->kind->increment};
+    /* Numbers stay numbers: sets of more than three axes. */
+    const char last = imki_lower(cell->text.end > cell->text.begin ? cell->text.end[-1] : '\0');
+    const bool number = name->exact && last >= '0' && last <= '7';
+    snprintf(column->name, sizeof column->name, "%s%c", name->kind->name,
+             name->axis < 0 ? '\0'
+             : number       ? last
+                            : "xyz34567"[name->axis]);
+    const imk_status status = find_unit(cell, settings, dates, error);
+    if (status != IMK_OK || cell->lacks_unit)
         return status;
+    if (imki_log_unit_fits(name->kind, &column->unit))
+        return IMK_OK;
+    if (name->exact || column->unit_origin == IMK_UNIT_OF_SETTINGS)
+        return imki_log_unit_refuse(name->kind, &column->unit, column->name, error);
+    make_other(cell);
+    return IMK_OK;
+}
+
+/* Columns called as in sensor_msgs/Imu are of that message, whose linear_acceleration has gravity
+ * in it. Beside other accelerometers, or without angular_velocity, the words are those of
+ * telephones for what has none. */
+static void judge_message(imki_log_cell *cells, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        imki_log_name *name = &cells[i].name;
+        bool rates = false, forces = false;
+        if (!name->kind || !name->of_message || name->kind->quantity != IMK_QUANTITY_SPECIFIC_FORCE)
+            continue;
+        for (size_t k = 0; k < count; k++) {
+            const imki_log_name *other = &cells[k].name;
+            const imk_quantity quantity = other->kind ? other->kind->quantity : IMK_QUANTITY_OTHER;
+            rates = rates || (other->of_message && quantity == IMK_QUANTITY_ANGULAR_RATE &&
+                              strcmp(other->group, name->group) == 0);
+            forces = forces || (!other->of_message && quantity == IMK_QUANTITY_SPECIFIC_FORCE);
+        }
+        if (!rates || forces)
+            cells[i].no_message = true;
     }
-    return check_dimension(k, &column->unit, column->name, error);
+    for (size_t i = 0; i < count; i++)
+        if (cells[i].no_message)
+            cells[i].name.kind = NULL;
+}
+
+void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_cell *cells)
+{
+    for (size_t i = 0; i < count; i++) {
+        imki_log_cell *cell = &cells[i];
+        char text[sizeof cell->column.name];
+        *cell = (imki_log_cell){.text = header[i]};
+        trim(&cell->text);
+        cell->skipped = cell->text.begin == cell->text.end ||
+                        (cell->text.end - cell->text.begin == 1 && *cell->text.begin == '-');
+        imki_log_unit_split(&cell->text, &cell->unit);
+        imki_log_piece_copy(text, sizeof text, cell->text);
+        cell->name = cell->skipped ? (imki_log_name){.axis = -1} : imki_log_name_of(text);
+        const imki_log_kind *kind = cell->name.kind;
+        if (kind && !kind->option && cell->unit.begin == cell->unit.end && !cell->name.unit)
+            cell->name.kind = NULL;
+    }
+    judge_message(cells, count);
+}
+
+bool imki_log_cells_same(const imki_log_cell *a, const imki_log_cell *b)
+{
+    return a->name.kind && b->name.kind && a->name.kind->quantity == b->name.kind->quantity &&
+           a->name.axis == b->name.axis;
+}
+
+static bool has_unit(const imki_log_cell *cell)
+{
+    return cell->unit.begin < cell->unit.end || cell->name.unit;
+}
+
+/* Of two columns for the same, the one with the exact name; of two times, the one with a unit.
+ * @return the one to leave; NULL: neither is better */
+static imki_log_cell *worse_of(imki_log_cell *a, imki_log_cell *b)
+{
+    if (a->name.exact != b->name.exact)
+        return a->name.exact ? b : a;
+    if (a->name.kind->quantity == IMK_QUANTITY_TIME && has_unit(a) != has_unit(b))
+        return has_unit(a) ? b : a;
+    return NULL;
+}
+
+static imk_status refuse_twice(const imki_log_cell *a, const imki_log_cell *b, imk_error *error)
+{
+    char found[96], name[48], first[24], second[24];
+    snprintf(name, sizeof name, "%s%.*s", a->name.kind->name, a->name.axis >= 0,
+             a->name.axis >= 0 ? &"xyz34567"[a->name.axis] : "");
+    imki_log_piece_copy(first, sizeof first, a->text);
+    imki_log_piece_copy(second, sizeof second, b->text);
+    snprintf(found, sizeof found, "this column is in the file twice, as %s and %s", first, second);
+    return imk_error_set(error, IMK_ERROR_COLUMN, name, found,
+                         "say which columns to read: --map with a name for each, such as "
+                         "--map gyro_x=NAME,gyro_y=NAME, or - in place of the other in --columns");
+}
+
+static imk_status resolve_doubles(imki_log_cell *cells, size_t count, imk_error *error)
+{
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < i; k++) {
+            if (!imki_log_cells_same(&cells[k], &cells[i]))
+                continue;
+            imki_log_cell *worse = worse_of(&cells[k], &cells[i]);
+            if (!worse)
+                return refuse_twice(&cells[k], &cells[i], error);
+            worse->name.kind = NULL;
+        }
+    return IMK_OK;
 }
 
 /* Turn the columns of the first three axes to forward-right-down. */
@@ -237,125 +274,67 @@ static imk_status apply_axes(imki_log_layout_read *layout, const char *axes, imk
     return IMK_OK;
 }
 
-static bool is_doubled(const imki_log_layout_read *layout, size_t index)
+/* Is any column of use? */
+static imk_status check_known(const imki_log_layout_read *layout, const imk_log_settings *settings,
+                              imk_error *error)
 {
-    const imk_log_column *column = &layout->column[index];
-    for (size_t i = 0; i < index; i++)
-        if (column->quantity != IMK_QUANTITY_OTHER &&
-            layout->column[i].quantity == column->quantity &&
-            layout->column[i].axis == column->axis)
-            return true;
-    return false;
-}
-
-/* The kind that the option of `asked` is of and that the unit does not fit; NULL: it fits a column,
- * or where there is none, a kind that there might be. */
-static const kind *misfit(const imki_log_layout_read *layout, const kind *asked,
-                          const imk_unit *unit)
-{
-    const kind *due = NULL;
-    bool fits = false;
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-        const kind *k = &kinds[i];
-        if (!k->option || !asked->option || strcmp(k->option, asked->option) != 0)
-            continue;
-        fits = fits || has_dimension(k, unit);
-        for (size_t j = 0; j < layout->column_count; j++) {
-            const imk_log_column *column = &layout->column[j];
-            if (column->quantity != k->quantity || column->increment != k->increment)
-                continue;
-            if (has_dimension(k, unit))
-                return NULL;
-            due = due ? due : k;
-        }
-    }
-    return due ? due : fits ? NULL : asked;
-}
-
-/* A unit of the settings is looked at also where each column has its own. */
-static imk_status check_settings(const imki_log_layout_read *layout,
-                                 const imk_log_settings *settings, imk_error *error)
-{
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-        const char *text = unit_setting(kinds[i].quantity, settings);
-        imk_unit unit;
-        if (!text)
-            continue;
-        const imk_status status = imk_unit_parse(text, text + strlen(text), &unit, error);
-        if (status != IMK_OK) {
-            if (error)
-                snprintf(error->field, sizeof error->field, "%s", kinds[i].option);
-            return status;
-        }
-        const kind *due = misfit(layout, &kinds[i], &unit);
-        if (due)
-            return check_dimension(due, &unit, due->option, error);
-    }
-    return IMK_OK;
-}
-
-/* "tempo [s]" is a time by its unit. */
-static imk_status refuse_without_time(const imki_log_layout_read *layout, imk_error *error)
-{
-    char next[160] = "add --rate 100Hz (samples per second)";
+    bool known = settings->columns || settings->any_columns;
+    const bool any = settings->any_columns;
+    bool axis[3] = {false};
     for (size_t i = 0; i < layout->column_count; i++) {
         const imk_log_column *c = &layout->column[i];
-        if (c->quantity == IMK_QUANTITY_OTHER &&
-            imk_dimension_equal(c->unit.dimension, imk_unit_of("s").dimension)) {
-            snprintf(next, sizeof next,
-                     "add --rate 100Hz (samples per second); if %.40s is the time, name it so "
-                     "with --columns, with a name for each column",
-                     c->name);
-            break;
-        }
+        known = known || c->quantity != IMK_QUANTITY_OTHER;
+        const bool position = imk_dimension_equal(c->unit.dimension, imk_unit_of("m").dimension);
+        for (int a = 0; a < 3; a++)
+            axis[a] =
+                axis[a] || (imki_lower(c->name[0]) == "xyz"[a] && c->name[1] == '\0' && !position);
     }
-    return imk_error_set(error, IMK_ERROR_RATE_MISSING, "time", "the log has no time column", next);
+    if (layout->column_count == 0)
+        return imk_error_set(error, IMK_ERROR_COLUMN, "columns", "every column is skipped",
+                             "at least one name in --columns");
+    const bool bare = !any && axis[0] && axis[1] && axis[2];
+    for (size_t i = 0; bare && i < layout->column_count; i++)
+        known = known && layout->column[i].axis >= 0;
+    if (known)
+        return IMK_OK;
+    return imk_error_set(
+        error, IMK_ERROR_COLUMN, layout->column[0].name,
+        bare ? "the names x, y, z do not say of which sensor they are"
+             : "no column has a known name",
+        bare
+            ? "say so: --map \"gyro_x=x,gyro_y=y,gyro_z=z\" for gyros, or accel_x and so on; with "
+              "time=NAME for the time, and units as in gyro_x=x [UNIT]"
+            : "known are time, gyro_x, dtheta_x, accel_x, dvel_x, mag_x, temperature, and the like "
+              "(docs/logs.md); add --columns with a name for each column (- skips a column), or "
+              "--map gyro_x=NAME,...");
 }
 
-/* Is any column of use? Is the time known? */
-static imk_status check_layout(const imki_log_layout_read *layout, const imk_log_settings *settings,
-                               imk_error *error)
-{
-    bool known = settings->columns != NULL || settings->any_columns;
-    for (size_t i = 0; i < layout->column_count; i++)
-        known |= layout->column[i].quantity != IMK_QUANTITY_OTHER;
-    if (!known)
-        return imk_error_set(
-            error, IMK_ERROR_COLUMN, layout->column[0].name, "no column has a known name",
-            "known are time, gyro_x, dtheta_x, accel_x, dvel_x, mag_x, temperature; add "
-            "--columns with a name for each column (- skips a column)");
-    return layout->time_column < 0 && settings->rate == 0.0 ? refuse_without_time(layout, error)
-                                                            : IMK_OK;
-}
-
-static imk_status add_cell(imki_log_layout_read *layout, size_t cell, imki_log_piece name,
+static imk_status add_cell(imki_log_layout_read *layout, size_t index, imki_log_cell *cell,
                            const imk_log_settings *settings, imk_error *error)
 {
-    layout->cell_column[cell] = -1;
-    layout->cell_factor[cell] = 1.0;
-    trim(&name);
-    if (name.end - name.begin == 1 && *name.begin == '-')
+    layout->cell_column[index] = -1;
+    layout->cell_factor[index] = 1.0;
+    if (cell->skipped)
         return IMK_OK;
-    const size_t index = layout->column_count;
-    imk_log_column *column = &layout->column[index];
-    const imk_status status = imki_log_column_make(name, settings, column, error);
+    imk_status status = IMK_OK;
+    if (cell->name.kind)
+        status = make_known(cell, settings, layout->date_cell[index], error);
+    else
+        make_other(cell);
     if (status != IMK_OK)
         return status;
-    if (is_doubled(layout, index))
-        return imk_error_set(error, IMK_ERROR_COLUMN, column->name,
-                             "this column is in the file twice",
-                             "remove one of the two, or skip it: - in its place in --columns");
-    layout->cell_column[cell] = (int)index;
-    layout->factor[index] = column->unit.scale;
-    layout->offset[index] = column->unit.offset;
-    const imk_status counts = imki_log_counts_apply(settings, column, &layout->factor[index],
-                                                    &layout->offset[index], error);
-    if (counts != IMK_OK)
-        return counts;
-    if (column->quantity == IMK_QUANTITY_TIME)
-        layout->time_column = (int)index;
-    layout->has_increments |= column->increment;
-    layout->column_count++;
+    const size_t column = layout->column_count++;
+    layout->column[column] = cell->column;
+    layout->cell_column[index] = (int)column;
+    layout->factor[column] = cell->column.unit.scale;
+    layout->offset[column] = cell->column.unit.offset;
+    status = imki_log_counts_apply(settings, &layout->column[column], &layout->factor[column],
+                                   &layout->offset[column], error);
+    if (status != IMK_OK)
+        return status;
+    if (cell->column.quantity == IMK_QUANTITY_TIME)
+        layout->time_column = (int)column;
+    layout->has_increments |= cell->column.increment;
     return IMK_OK;
 }
 
@@ -363,20 +342,31 @@ imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
                                 const imk_log_settings *settings, imki_log_layout_read *layout,
                                 imk_error *error)
 {
-    const char separator = layout->separator;
-    *layout =
-        (imki_log_layout_read){.cell_count = cell_count, .separator = separator, .time_column = -1};
-    for (size_t i = 0; i < cell_count; i++) {
-        const imk_status status = add_cell(layout, i, header[i], settings, error);
-        if (status != IMK_OK)
-            return status;
-    }
-    if (layout->column_count == 0)
-        return imk_error_set(error, IMK_ERROR_COLUMN, "columns", "every column is skipped",
-                             "at least one name in --columns");
-    imk_status status = check_layout(layout, settings, error);
+    imki_log_cell cells[IMK_LOG_COLUMNS_MAX];
+    imki_log_piece mapped[IMK_LOG_COLUMNS_MAX];
+    char text[IMK_LOG_COLUMNS_MAX][IMKI_LOG_NAME_SIZE];
+    bool dates[IMK_LOG_COLUMNS_MAX];
+    memcpy(dates, layout->date_cell, sizeof dates);
+    *layout = (imki_log_layout_read){.cell_count = cell_count,
+                                     .separator = layout->separator,
+                                     .decimal_comma = layout->decimal_comma,
+                                     .time_column = -1};
+    memcpy(layout->date_cell, dates, sizeof dates);
+    imk_status status = IMK_OK;
+    if (settings->map)
+        status = imki_log_map(settings->map, header, cell_count, text, mapped, error);
+    if (status != IMK_OK)
+        return status;
+    imki_log_cells_name(settings->map ? mapped : header, cell_count, cells);
+    status = resolve_doubles(cells, cell_count, error);
+    for (size_t i = 0; i < cell_count && status == IMK_OK; i++)
+        status = add_cell(layout, i, &cells[i], settings, error);
     if (status == IMK_OK)
-        status = check_settings(layout, settings, error);
+        status = check_known(layout, settings, error);
+    if (status == IMK_OK)
+        status = imki_log_settings_check(layout, settings, error);
+    if (status == IMK_OK)
+        status = imki_log_missing_check(cells, layout, settings, error);
     if (status == IMK_OK && settings->axes)
         status = apply_axes(layout, settings->axes, error);
     if (status != IMK_OK)
@@ -387,21 +377,12 @@ imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
     return IMK_OK;
 }
 
-imk_status imki_log_first_rows(imk_log_reader *reader, uint64_t rows, const double time[2],
-                               const char *none, const char *due, imk_error *error)
+void imki_log_layout_scale(imki_log_layout_read *layout, size_t cell, double factor)
 {
-    const imki_log_layout_read *layout = &reader->layout;
-    if (rows == 0)
-        return imk_error_set(error, IMK_ERROR_EMPTY, "", none, due);
-    if (rows < 2 && layout->has_increments && reader->rate == 0.0)
-        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "",
-                             "a single row of increments does not tell the sampling rate",
-                             "give two rows, or add --rate 100Hz (samples per second)");
-    if (layout->time_column >= 0) {
-        const double scale = layout->factor[layout->time_column];
-        if (fabs(time[0]) * scale > 1e6)
-            reader->time_origin = time[0];
-        reader->last_step = (time[1] - time[0]) * scale;
-    }
-    return IMK_OK;
+    const int column = layout->cell_column[cell];
+    if (column < 0)
+        return;
+    layout->factor[column] *= factor;
+    if (column != layout->time_column)
+        layout->cell_factor[cell] *= factor;
 }

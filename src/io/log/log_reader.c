@@ -2,6 +2,8 @@
 /* Reading a log: rows in blocks, as its format gives them; then per block what needs neighbours:
  * times, intervals, increments, findings. */
 #define _POSIX_C_SOURCE 200809L
+#include "base/text_internal.h"
+#include "csv/log_dialects_internal.h"
 #include "log_reader_internal.h"
 
 #include <math.h>
@@ -40,13 +42,19 @@ static imk_status check_settings(const imk_log_settings *settings, imk_error *er
 
 static imk_status refuse_format(const char *name, imk_error *error)
 {
-    char found[96], expected[160] = "one of";
+    char found[96], expected[400] = "one of";
     size_t used = strlen(expected);
     snprintf(found, sizeof found, "no format is called \"%.40s\"", name);
     const imk_log_format *format;
     for (size_t i = 0; (format = imk_log_format_get(i)) != NULL && used < sizeof expected; i++)
         used += (size_t)snprintf(expected + used, sizeof expected - used, "%s %s", i > 0 ? "," : "",
                                  format->name);
+    const imki_log_dialect *dialect;
+    for (size_t i = 0; (dialect = imki_log_dialect_get(i)) != NULL; i++)
+        if (dialect->format) {
+            imki_append_text(expected, sizeof expected, ", ");
+            imki_append_text(expected, sizeof expected, dialect->format);
+        }
     return imk_error_set(error, IMK_ERROR_NAME_UNKNOWN, "format", found, expected);
 }
 
@@ -55,8 +63,10 @@ static imk_status find_format(imk_log_reader *reader, const imki_input *input, i
 {
     const imki_log_text *text = &reader->text;
     const char *name = reader->settings.format;
+    const bool of_text = name && imki_log_dialect_named(name);
     reader->format =
-        name    ? imk_log_format_named(name)
+        of_text ? imk_log_format_get(0)
+        : name  ? imk_log_format_named(name)
         : input ? imki_log_recognise(reader->path, text->next, (size_t)(text->end - text->next))
                 : imki_log_format_of_folders();
     if (!reader->format)
@@ -286,6 +296,9 @@ void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint64_t *si
     const imki_log_text *text = &reader->text;
     if (reader->codec->progress) {
         reader->codec->progress(reader, done, size);
+    } else if (text->raw_size > 0) {
+        *size = text->raw_size;
+        *done = *size - (uint64_t)(text->decoder.raw_end - text->decoder.raw);
     } else if (text->buffer) {
         const uint64_t consumed = text->taken + (uint64_t)(text->next - text->base);
         const uint64_t fetched = text->taken + (uint64_t)(text->end - text->base);
@@ -359,6 +372,8 @@ static imk_status read_block(imk_log_reader *reader, size_t max_rows, double *co
         *rows = imki_log_part_keep(reader, read, time, out);
     } while (status == IMK_OK && read > 0 && *rows == 0);
     finish_block(reader, *rows, time, columns);
+    if (status == IMK_OK && time)
+        status = imki_log_pace_check(reader, *rows, time, read == 0, error);
     return status;
 }
 
@@ -404,6 +419,8 @@ imk_status imk_log_seek(imk_log_reader *reader, double fraction, imk_error *erro
     reader->last_time = (double)NAN;
     reader->rows = reader->not_finite = reader->first_not_finite = 0;
     reader->damaged = reader->first_damaged = 0;
+    reader->damaged_line = reader->damaged_column = 0;
+    reader->headers = reader->first_header = 0;
     reader->failed = reader->cut_short = false;
     return IMK_OK;
 }
@@ -416,6 +433,10 @@ imk_log_findings imk_log_findings_get(const imk_log_reader *reader)
     found.first_not_finite = reader->first_not_finite;
     found.damaged = reader->damaged;
     found.first_damaged = reader->first_damaged;
+    found.damaged_line = reader->damaged_line;
+    found.damaged_column = reader->damaged_column;
+    found.headers = reader->headers;
+    found.first_header = reader->first_header;
     found.cut_short = reader->cut_short;
     if (reader->layout.time_column < 0 && reader->rows > 0)
         found.last_time = (double)(reader->rows - 1) / reader->rate;

@@ -6,11 +6,28 @@
 #include "imukit/log.h"
 #include "jobs/record/record_times_internal.h"
 #include "log_formats_internal.h"
+#include "log_stamps_internal.h"
 #include "log_text_internal.h"
 
 enum { IMKI_LABELS_MAX = 4096 };
 
 typedef char imki_log_label[48];
+
+/* What the header and the settings leave open. */
+typedef struct imki_log_missing {
+    size_t count;                   /* units: one for each option that states one */
+    size_t kind[4];                 /* their rows of imki_log_kinds */
+    int first[4];                   /* the first column of each */
+    bool cell[IMK_LOG_COLUMNS_MAX]; /* lacks its unit */
+    bool rate;                      /* there is neither a time nor a rate */
+} imki_log_missing;
+
+/* What the rows show of what is missing. */
+typedef struct imki_log_hints {
+    const char *time_unit, *time_words; /* "ns", "nanoseconds": the only one that fits; NULL */
+    char time[32];                      /* one of the times */
+    bool counts;                        /* whole numbers where a unit is missing */
+} imki_log_hints;
 
 /* Cells of a row and the columns they are. */
 typedef struct imki_log_layout_read {
@@ -18,12 +35,16 @@ typedef struct imki_log_layout_read {
     int cell_column[IMK_LOG_COLUMNS_MAX];    /* -1: skipped */
     double cell_factor[IMK_LOG_COLUMNS_MAX]; /* 1 for time, which is scaled later */
     char separator;
+    bool decimal_comma;                  /* "1,5" is a number */
+    bool date_cell[IMK_LOG_COLUMNS_MAX]; /* holds dates: "2024-05-01T12:00:00.5Z" */
+    imki_log_stamps stamps;              /* how the times are read; set behind the columns */
     size_t column_count;
     imk_log_column column[IMK_LOG_COLUMNS_MAX];
     double factor[IMK_LOG_COLUMNS_MAX]; /* per column: scale, with the sign of the axes */
     double offset[IMK_LOG_COLUMNS_MAX]; /* per column, added to factor times number */
     int time_column;                    /* -1: none */
     bool has_increments;
+    imki_log_missing missing;
 } imki_log_layout_read;
 
 /* A piece of text. */
@@ -43,9 +64,13 @@ char imki_log_find_separator(const char *begin, const char *end);
 bool imki_log_line_is_idle(const char *begin, const char *end);
 
 bool imki_log_piece_is_number(imki_log_piece piece, double *value);
+/* Is it empty, or a word for a value that is not there, such as N/A, null or -? */
+bool imki_log_piece_is_missing(imki_log_piece piece);
 
-/* Fill the layout from the names of the cells (`header`, or NULL) and the settings.
- * @param first_row  cell count of the first row, for the messages */
+/* Fill the layout from the names of the cells (`header`) and the settings. `separator`,
+ * `decimal_comma` and `dates` of the layout stay.
+ * @return IMK_ERROR_UNIT_MISSING, IMK_ERROR_RATE_MISSING: all that is missing is in one message,
+ *         and in layout->missing */
 imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
                                 const imk_log_settings *settings, imki_log_layout_read *layout,
                                 imk_error *error);
@@ -59,20 +84,24 @@ bool imki_log_counted(const imk_log_settings *settings, imk_quantity quantity);
 imk_status imki_log_counts_apply(const imk_log_settings *settings, imk_log_column *column,
                                  double *factor, double *offset, imk_error *error);
 
-/* Name and unit of one column ("gyro_x [deg/s]"), with the unit from the settings if need be. */
-imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *settings,
-                                imk_log_column *column, imk_error *error);
+/* The message of what is missing once more, with what the rows show. */
+imk_status imki_log_missing_refuse(const imki_log_layout_read *layout, const imki_log_hints *hints,
+                                   imk_error *error);
+
+/* Multiply the numbers of a cell, beside its unit. */
+void imki_log_layout_scale(imki_log_layout_read *layout, size_t cell, double factor);
 
 /* Read "right-forward-up": file axis i is sign[i] times body axis body[i] (0 forward, 1 right,
  * 2 down). */
 imk_status imki_log_axes_parse(const char *text, int body[3], double sign[3], imk_error *error);
 
-/* Read one row in its general form: blanks, quotes, empty cells, nan, labels.
+/* Read one row in its general form: blanks, quotes, empty cells, nan, labels, decimal commas,
+ * dates.
  * @param labels      texts of label columns, *label_count of room for IMKI_LABELS_MAX
  * @param not_finite  whether a number is missing, NaN or infinite */
-imk_status imki_log_row_read(imki_log_layout_read *layout, imki_log_piece line, bool whole,
-                             size_t line_number, imki_log_label *labels, size_t *label_count,
-                             double *values, bool *not_finite, imk_error *error);
+imk_status imki_log_row_read(imki_log_layout_read *layout, imki_log_piece line, size_t line_number,
+                             imki_log_label *labels, size_t *label_count, double *values,
+                             bool *not_finite, imk_error *error);
 
 enum { IMKI_LOG_BLOCK = 1024 }; /* rows handled at a time */
 
@@ -83,6 +112,13 @@ typedef struct imki_log_part {
     bool begun;
     double first_time, place; /* of the first row [s]; of the last row, from it */
 } imki_log_part;
+
+/* Steps of the times that are even, for a look at a stated rate. */
+typedef struct imki_log_pace {
+    bool begun, done;
+    size_t steps;
+    double first, last, least, most; /* [s] */
+} imki_log_pace;
 
 struct imk_log_reader {
     imki_log_text text;
@@ -97,6 +133,8 @@ struct imk_log_reader {
     double origin_before; /* [s] that the format itself subtracted from the times */
     /* Met by the format: rows, messages or blocks that are left out; the end within one. */
     size_t damaged, first_damaged;
+    size_t damaged_line, damaged_column; /* of the first, in a text */
+    size_t headers, first_header;        /* of a text, once more between its rows */
     bool cut_short;
     double rate;        /* [Hz]; 0: from the times */
     double time_origin; /* in the unit of the file */
@@ -113,10 +151,16 @@ struct imk_log_reader {
     imk_error failure;
     imki_record_times times;
     imki_log_part part;
+    imki_log_pace pace;
     double spare[IMKI_LOG_BLOCK];    /* for columns nobody wants */
     double time[IMKI_LOG_BLOCK];     /* for the times, if nobody wants them */
     double interval[IMKI_LOG_BLOCK]; /* [s] of increments */
 };
+
+/* Compare the rate of the settings with the times [s] of the next rows. @param ended  of the last
+ * ones. @return IMK_ERROR_CONFLICT */
+imk_status imki_log_pace_check(imk_log_reader *reader, size_t rows, const double *time, bool ended,
+                               imk_error *error);
 
 /* Keep the rows within the part that the settings state; the others are counted.
  * @param time,out  of `rows` rows, as the format gave them: times in the unit of the file (NULL: no

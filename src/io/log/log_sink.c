@@ -1,12 +1,52 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A log that is written as a sink of records. */
+/* A log that is written as a sink of records, also in the words of EuRoC [EUROC]. */
 #include "imukit/log.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { EUROC_COLUMNS = 7 };
+
+/* Names and units as in imu0/data.csv. */
+static imk_status rename_columns(size_t count, const imk_log_column *columns,
+                                 imk_log_column *renamed, imk_error *error)
+{
+    static const struct {
+        const char *from, *to, *unit;
+    } names[EUROC_COLUMNS] = {
+        {"time", "#timestamp", "ns"},       {"gyro_x", "w_RS_S_x", "rad s^-1"},
+        {"gyro_y", "w_RS_S_y", "rad s^-1"}, {"gyro_z", "w_RS_S_z", "rad s^-1"},
+        {"accel_x", "a_RS_S_x", "m s^-2"},  {"accel_y", "a_RS_S_y", "m s^-2"},
+        {"accel_z", "a_RS_S_z", "m s^-2"}};
+    for (size_t i = 0; i < EUROC_COLUMNS; i++) {
+        if (count != EUROC_COLUMNS || strcmp(columns[i].name, names[i].from) != 0)
+            return imk_error_set(error, IMK_ERROR_COLUMN, names[i].from,
+                                 "the EuRoC format has other columns",
+                                 "time, gyro_x … gyro_z, accel_x … accel_z, in this order");
+        renamed[i] = columns[i];
+        renamed[i].unit = imk_unit_of(names[i].unit);
+        snprintf(renamed[i].name, sizeof renamed[i].name, "%s", names[i].to);
+    }
+    return IMK_OK;
+}
 
 static imk_status begin(void *context, size_t column_count, const imk_log_column *columns,
                         const int *decimals, uint64_t rows, imk_error *error)
 {
     imk_log_sink *s = context;
     int count[IMK_LOG_COLUMNS_MAX];
+    imk_log_column renamed[EUROC_COLUMNS];
+    if (s->euroc && imk_log_format_of(s->path) != imk_log_format_get(0))
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, s->path, "the EuRoC format is a text",
+                             "a name that ends in .csv");
+    if (s->euroc) {
+        const imk_status status = rename_columns(column_count, columns, renamed, error);
+        return status == IMK_OK ? imk_log_create(s->path, column_count, renamed, IMK_LOG_SHORTEST,
+                                                 NULL, rows, &s->writer, error)
+                                : status;
+    }
     for (size_t c = 0; c < column_count; c++)
         count[c] = decimals[c] >= 0 ? decimals[c] : s->decimals;
     return imk_log_create(s->path, column_count, columns,
@@ -14,10 +54,31 @@ static imk_status begin(void *context, size_t column_count, const imk_log_column
                           rows, &s->writer, error);
 }
 
+/* Times in whole nanoseconds, which their unit then writes as whole numbers. */
+static imk_status write_euroc(imk_log_sink *s, size_t rows, const double *const *columns,
+                              const imk_executor *executor)
+{
+    const double *changed[EUROC_COLUMNS];
+    double *time = malloc((rows > 0 ? rows : 1) * sizeof *time);
+    if (!time)
+        return IMK_ERROR_MEMORY;
+    for (size_t i = 0; i < rows; i++)
+        time[i] = round(columns[0][i] * 1e9) * 1e-9;
+    for (size_t c = 0; c < EUROC_COLUMNS; c++)
+        changed[c] = c == 0 ? time : columns[c];
+    const imk_status status = imk_log_write(s->writer, rows, changed, executor);
+    free(time);
+    return status;
+}
+
 static imk_status write_rows(void *context, size_t rows, const double *const *columns,
                              const imk_executor *executor, imk_error *error)
 {
     imk_log_sink *s = context;
+    if (s->euroc) {
+        const imk_status written = write_euroc(s, rows, columns, executor);
+        return written == IMK_OK ? written : imk_error_set(error, written, s->path, NULL, NULL);
+    }
     const imk_status status = imk_log_write(s->writer, rows, columns, executor);
     return status == IMK_OK ? status : imk_error_set(error, status, s->path, NULL, NULL);
 }

@@ -85,7 +85,7 @@ static imk_status refuse(const imk_log_reader *reader, size_t matches, imk_error
     if (listed > 1)
         snprintf(expected + used, sizeof expected - used, listed < shown ? ", ...)" : ")");
     if (matches > 0 && !s->topic && s->instance == 0)
-        snprintf(found, sizeof found, "the log holds %zu sensors", readable);
+        snprintf(found, sizeof found, "the log has %zu sensors", readable);
     else if (s->topic)
         snprintf(found, sizeof found, "%s of the %zu sensor%s of the log %s called \"%.40s\"",
                  matches > 0 ? "several" : "none", readable, readable == 1 ? "" : "s",
@@ -149,4 +149,23 @@ void imki_log_damage(imk_log_reader *reader, size_t rows)
 {
     if (reader->damaged++ == 0)
         reader->first_damaged = reader->rows + rows;
+}
+
+imk_status imki_log_first_rows(imk_log_reader *reader, uint64_t rows, const double time[2],
+                               const char *none, const char *due, imk_error *error)
+{
+    const imki_log_layout_read *layout = &reader->layout;
+    if (rows == 0)
+        return imk_error_set(error, IMK_ERROR_EMPTY, "", none, due);
+    if (rows < 2 && layout->has_increments && reader->rate == 0.0)
+        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "",
+                             "a single row of increments does not tell the sampling rate",
+                             "give two rows, or add --rate RATE (samples per second)");
+    if (layout->time_column >= 0) {
+        const double scale = layout->factor[layout->time_column];
+        if (fabs(time[0]) * scale > 1e6)
+            reader->time_origin = time[0];
+        reader->last_step = (time[1] - time[0]) * scale;
+    }
+    return IMK_OK;
 }

@@ -41,6 +41,7 @@ void imki_log_text_stop(imki_log_text *text)
 {
     imki_input_close(text->input);
     free(text->buffer);
+    free(text->decoder.buffer);
     *text = (imki_log_text){0};
 }
 
@@ -73,14 +74,40 @@ static imk_status read_more(imki_log_text *text, imk_error *error)
     if (!make_room(text))
         return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     char *room = text->buffer + (text->end - text->base);
+    const size_t size = text->capacity - (size_t)(text->end - text->base);
     size_t got;
-    const imk_status status = imki_input_read(
-        text->input, room, text->capacity - (size_t)(text->end - text->base), &got, error);
+    const imk_status status =
+        text->decoder.encoding != IMKI_LOG_PLAIN
+            ? imki_log_decode(&text->decoder, text->input, room, size, &got, error)
+            : imki_input_read(text->input, room, size, &got, error);
     if (status != IMK_OK)
         return status;
     text->finished = got == 0;
     text->end += got;
     find_lines_end(text, room);
+    return IMK_OK;
+}
+
+imk_status imki_log_text_decode(imki_log_text *text, imki_log_encoding encoding, imk_error *error)
+{
+    imki_log_decoder decoder;
+    char *buffer = malloc(WINDOW);
+    imk_status status = buffer ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    if (status == IMK_OK)
+        status =
+            imki_log_decoder_start(&decoder, encoding, text->next, text->end, !text->buffer, error);
+    if (status != IMK_OK) {
+        free(buffer);
+        return status;
+    }
+    text->raw_size = text->buffer ? 0 : (uint64_t)(text->end - text->base);
+    free(text->buffer);
+    text->buffer = buffer;
+    text->capacity = WINDOW;
+    text->decoder = decoder;
+    text->base = text->next = text->lines_end = text->end = text->buffer;
+    text->finished = false;
+    text->taken = 0;
     return IMK_OK;
 }
 
@@ -101,6 +128,9 @@ uint64_t imki_log_text_place(const imki_log_text *text)
 
 imk_status imki_log_text_seek(imki_log_text *text, uint64_t place, imk_error *error)
 {
+    if (text->decoder.encoding != IMKI_LOG_PLAIN)
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "",
+                             "a text that is decoded is read from its beginning", "");
     text->line = 1;
     text->hold = NULL;
     if (!text->buffer) {

@@ -39,11 +39,13 @@ struct imk_log_writer {
     uint64_t beyond_row;
 };
 
-/* Names and units become cells of the header, so they must not contain what divides it. */
+/* Names and units become cells of the header, so they must not contain what divides it. A # in
+ * front of all makes the header a comment, which is read as a header, too. */
 static imk_status check_column(const imk_log_column *columns, size_t index, imk_error *error)
 {
     const imk_log_column *column = &columns[index];
-    if (column->name[0] == '\0' || strpbrk(column->name, ",;\"#[]()\t\r\n"))
+    const char *name = column->name + (index == 0 && column->name[0] == '#');
+    if (name[0] == '\0' || strpbrk(name, ",;\"#[]()\t\r\n"))
         return imk_error_set(error, IMK_ERROR_COLUMN, column->name,
                              "this is not a valid column name",
                              "a name without separators, quotes and brackets");

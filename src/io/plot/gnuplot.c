@@ -126,7 +126,7 @@ static bool await(pid_t child, double limit, int *status)
 /* What happened, and in its own words why. */
 static imk_status refuse(const imki_scratch *s, const char *found, imk_error *error)
 {
-    char line[sizeof error->expected], expected[sizeof line + 20];
+    char line[160], expected[sizeof line + 20];
     imki_scratch_last_line(s, IMKI_SCRATCH_SAID, line, sizeof line);
     snprintf(expected, sizeof expected, "gnuplot printed: %s", line);
     return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", found,

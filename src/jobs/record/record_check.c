@@ -88,7 +88,11 @@ void imki_tell_damage(const imk_record_source *source, imk_findings *findings)
     const imk_log_findings f = source->findings(source->context);
     if (f.damaged > 0)
         imki_find(findings, IMK_FINDING_WARNING, "damaged", NULL,
-                  IMKI_NUMBERS((double)f.damaged, (double)f.rows, (double)f.first_damaged));
+                  IMKI_NUMBERS((double)f.damaged, (double)f.rows, (double)f.first_damaged,
+                               (double)f.damaged_line, (double)f.damaged_column));
+    if (f.headers > 0)
+        imki_find(findings, IMK_FINDING_WARNING, "headers", NULL,
+                  IMKI_NUMBERS((double)f.headers, (double)f.first_header));
     if (f.cut_short)
         imki_find(findings, IMK_FINDING_WARNING, "cut_short", NULL, IMKI_NUMBERS((double)f.rows));
 }

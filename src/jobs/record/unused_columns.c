@@ -55,6 +55,9 @@ static const char *const others[] = {
     "table",    "error", "err",       "quaternion", "quat",        "orientation", "angle",
     "position", "pos",   "noise",     "residual",   "gravity"};
 
+/* With one of these an acceleration has lost its gravity: no reading of an accelerometer. */
+static const char *const gravity_free[] = {"free", "user", "linear", "lin", "grav"};
+
 static bool is_letter(char c)
 {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
@@ -132,8 +135,18 @@ static int joined(const imk_log_column *column, const char *word, bool short_too
     return -1;
 }
 
+static bool is_gravity_free(const char *word)
+{
+    for (size_t i = 0; i < sizeof gravity_free / sizeof gravity_free[0]; i++)
+        if (strcmp(word, gravity_free[i]) == 0)
+            return true;
+    return false;
+}
+
 static bool is_other(const char *word)
 {
+    if (is_gravity_free(word))
+        return true;
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
         if (strcmp(word, others[i]) == 0)
             return true;
@@ -248,10 +261,34 @@ static likeness look(size_t count, const imk_log_column *columns, int sensor, bo
     return l;
 }
 
+/* Columns of accelerations without gravity, where no accelerometer is read. */
+static void tell_gravity_free(size_t count, const imk_log_column *columns, imk_findings *findings)
+{
+    char names[96] = "";
+    if (has(count, columns, IMK_ACCEL, -1))
+        return;
+    for (size_t k = 0; k < count; k++) {
+        words w;
+        bool without = false, acceleration = false;
+        divide(columns[k].name, &w);
+        for (size_t i = 0; i < w.count; i++) {
+            without = without || is_gravity_free(w.word[i]);
+            acceleration = acceleration || strcmp(w.word[i], "acc") == 0 ||
+                           strcmp(w.word[i], "accel") == 0 ||
+                           strcmp(w.word[i], "acceleration") == 0;
+        }
+        if (columns[k].quantity == IMK_QUANTITY_OTHER && without && acceleration)
+            list(names, sizeof names, columns[k].name);
+    }
+    if (names[0])
+        imki_find(findings, IMK_FINDING_NOTE, "gravity_free", names, IMKI_NUMBERS(0));
+}
+
 bool imki_tell_unused(size_t count, const imk_log_column *columns, int kinds,
                       imk_findings *findings)
 {
     bool whole = false;
+    tell_gravity_free(count, columns, findings);
     for (int sensor = 0; sensor < kinds; sensor++) {
         /* A magnetometer beside the others is an extra, and often has no unit. */
         const bool read = sensor == IMK_MAG || has(count, columns, sensor, -1);

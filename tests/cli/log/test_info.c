@@ -106,7 +106,7 @@ static void test_refusals(void **state)
     check_contains(err, "none.csv", "missing");
     assert_int_equal(run("printf '' >empty.csv; $I info empty.csv"), 1);
     assert_int_equal(run("$I info rest.csv --topic imu"), 1);
-    check_contains(err, "the log holds one sensor, which has no name", "topic");
+    check_contains(err, "leave --topic and --instance out", "topic");
     assert_int_equal(run("$I info rest.csv --format nonesuch"), 1);
     check_contains(err, "no format is called \"nonesuch\"", "format");
     /* rest, model, no unit, the drive and its log, long.npy and its names, empty */

@@ -78,8 +78,8 @@ static void test_compensate(void **state)
     assert_int_equal(run("$I compensate log.csv all.yaml -o o.csv"), 0);
     assert_null(strstr(err, "as it came"));
     assert_null(strstr(err, "magnetometer"));
-    check_told("mag_y/magy", "compensate wrong.csv all.yaml -o o.csv", 0,
-               "magy, which looks like mag_y");
+    check_told("mag_y/mag_y_raw", "compensate wrong.csv all.yaml -o o.csv", 0,
+               "mag_y_raw, which looks like mag_y");
     assert_int_equal(run("$I compensate log.csv clean.yaml -o o.csv --strict"), 1);
     sweep();
 }

@@ -2,7 +2,9 @@
 /* A row of a CSV text in its general form: any of the separators, blanks and quotes around cells,
  * empty cells, nan, labels. */
 #include "imukit/decimal.h"
-#include "log_reader_internal.h"
+
+#include "base/text_internal.h"
+#include "io/log/log_reader_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,7 +19,8 @@ bool imki_log_line_is_idle(const char *begin, const char *end)
 {
     while (begin < end && is_blank(*begin))
         begin++;
-    return begin == end || *begin == '#';
+    return begin == end || *begin == '#' || *begin == '%' ||
+           (end - begin >= 2 && begin[0] == '/' && begin[1] == '/');
 }
 
 /* End of a cell: the separator outside brackets and quotes. */
@@ -105,6 +108,36 @@ bool imki_log_piece_is_number(imki_log_piece piece, double *value)
     return piece.begin < piece.end && imk_decimal_parse(piece.begin, piece.end, value) == piece.end;
 }
 
+bool imki_log_piece_is_missing(imki_log_piece piece)
+{
+    static const char *const words[] = {"-", "--", "n/a", "#n/a", "na", "null", "none", "nil"};
+    const size_t length = (size_t)(piece.end - piece.begin);
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+        size_t same = 0;
+        while (same < length && imki_lower(piece.begin[same]) == words[i][same] && words[i][same])
+            same++;
+        if (same == length && words[i][same] == '\0')
+            return true;
+    }
+    return length == 0;
+}
+
+/* A number as the log writes them; with a decimal comma there is no point. */
+static bool is_number(const imki_log_layout_read *layout, imki_log_piece cell, double *value)
+{
+    char text[64];
+    const size_t length = (size_t)(cell.end - cell.begin);
+    if (!layout->decimal_comma)
+        return imki_log_piece_is_number(cell, value);
+    if (length >= sizeof text || memchr(cell.begin, '.', length))
+        return false;
+    memcpy(text, cell.begin, length);
+    char *comma = memchr(text, ',', length);
+    if (comma)
+        *comma = '.';
+    return imki_log_piece_is_number((imki_log_piece){text, text + length}, value);
+}
+
 /* Number of a label, a new one if need be; IMKI_LABELS_MAX when there is no room. */
 static size_t find_label(imki_log_piece cell, imki_log_label *labels, size_t *label_count)
 {
@@ -134,17 +167,6 @@ static imk_status refuse(imk_error *error, imk_status status, const char *field,
     return status;
 }
 
-static imk_status refuse_cut(imk_error *error, size_t count, size_t due, size_t line)
-{
-    char found[96];
-    snprintf(found, sizeof found, "the last line is cut in the middle, %s",
-             count < due ? "cells are missing" : "its last number is incomplete");
-    imk_error_set(error, IMK_ERROR_COLUMN, "", found, "delete this line, or copy the file again");
-    if (error)
-        error->line = line;
-    return IMK_ERROR_COLUMN;
-}
-
 static imk_status refuse_count(imk_error *error, size_t count, size_t due, size_t line)
 {
     char found[96], expected[96];
@@ -156,35 +178,36 @@ static imk_status refuse_count(imk_error *error, size_t count, size_t due, size_
     return IMK_ERROR_COLUMN;
 }
 
-/* Does a last cell at the very end of the text look cut off: "", "-", "1.", "2e", "2e-"? */
-static bool looks_cut(imki_log_piece cell)
+/* The number of a cell; NaN where there is none. */
+static bool read_value(const imki_log_layout_read *layout, int column, imki_log_piece cell,
+                       double *value)
 {
-    if (cell.begin == cell.end)
-        return true;
-    const char last = cell.end[-1];
-    return last == '.' || last == '-' || last == '+' || last == 'e' || last == 'E';
+    *value = (double)NAN;
+    if (column == layout->time_column && layout->stamps.exact)
+        return imki_log_stamp_read(&layout->stamps, cell.begin, cell.end, value) ||
+               imki_log_piece_is_missing(cell) || is_number(layout, cell, value);
+    return is_number(layout, cell, value) || imki_log_piece_is_missing(cell);
 }
 
-imk_status imki_log_row_read(imki_log_layout_read *layout, imki_log_piece line, bool whole,
-                             size_t line_number, imki_log_label *labels, size_t *label_count,
-                             double *values, bool *not_finite, imk_error *error)
+imk_status imki_log_row_read(imki_log_layout_read *layout, imki_log_piece line, size_t line_number,
+                             imki_log_label *labels, size_t *label_count, double *values,
+                             bool *not_finite, imk_error *error)
 {
-    imki_log_piece cells[IMK_LOG_COLUMNS_MAX];
+    imki_log_piece cells[IMK_LOG_COLUMNS_MAX + 1];
     const size_t due = layout->cell_count;
     const size_t count =
-        imki_log_split(line.begin, line.end, layout->separator, IMK_LOG_COLUMNS_MAX, cells);
-    if (!whole && (count < due || (count == due && looks_cut(cells[due - 1]))))
-        return refuse_cut(error, count, due, line_number);
-    if (count != due)
+        imki_log_split(line.begin, line.end, layout->separator, IMK_LOG_COLUMNS_MAX + 1, cells);
+    /* A separator behind the last cell ends it. */
+    if (count != due && !(count == due + 1 && cells[due].begin == cells[due].end))
         return refuse_count(error, count, due, line_number);
     *not_finite = false;
     for (size_t i = 0; i < due; i++) {
         const int index = layout->cell_column[i];
         if (index < 0)
             continue;
-        imk_log_column *column = &layout->column[index];
+        const imk_log_column *column = &layout->column[index];
         const size_t place = (size_t)(cells[i].begin - line.begin) + 1;
-        double value = (double)NAN;
+        double value;
         if (column->label) {
             const size_t label = find_label(cells[i], labels, label_count);
             if (label == IMKI_LABELS_MAX)
@@ -195,9 +218,11 @@ imk_status imki_log_row_read(imki_log_layout_read *layout, imki_log_piece line, 
             values[index] = (double)label;
             continue;
         }
-        if (cells[i].begin < cells[i].end && !imki_log_piece_is_number(cells[i], &value))
+        if (!read_value(layout, index, cells[i], &value))
             return refuse(error, IMK_ERROR_SYNTAX, column->name, cells[i],
-                          "a number with a decimal point", line_number, place);
+                          layout->decimal_comma ? "a number with a decimal comma, as in the others"
+                                                : "a number with a decimal point",
+                          line_number, place);
         *not_finite |= !isfinite(value);
         values[index] = value * layout->cell_factor[i];
     }

@@ -1,0 +1,462 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The header of a CSV text: the first line, the last comment before the rows, or none; the names
+ * and units of its cells, with those of the settings, of a line of units and of the program that
+ * wrote it. */
+#include "log_csv_internal.h"
+
+#include "base/text_internal.h"
+#include "imukit/decimal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static char *copy_line(imki_log_piece line)
+{
+    const size_t size = (size_t)(line.end - line.begin);
+    char *text = malloc(size + 1);
+    if (text) {
+        memcpy(text, line.begin, size);
+        text[size] = '\0';
+    }
+    return text;
+}
+
+static imk_status no_memory(imk_error *error)
+{
+    return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+}
+
+imk_status imki_csv_line(imki_log_text *text, imki_log_piece *line, bool *whole, bool *found,
+                         imki_csv_comment *comment, imk_error *error)
+{
+    for (;;) {
+        const imk_status status = imki_log_text_need_line(text, error);
+        if (status != IMK_OK)
+            return status;
+        *found = imki_log_text_take_line(text, &line->begin, &line->end, whole);
+        if (!*found || !imki_log_line_is_idle(line->begin, line->end))
+            return IMK_OK;
+        const char *begin = line->begin;
+        while (begin < line->end && (*begin == ' ' || *begin == '\t'))
+            begin++;
+        if (!comment || begin == line->end)
+            continue;
+        free(comment->text);
+        comment->text = copy_line(*line);
+        comment->line = text->line - 1;
+        if (!comment->text)
+            return no_memory(error);
+    }
+}
+
+void imki_csv_go_back(imki_log_text *text, size_t line)
+{
+    text->next = text->hold;
+    if (text->lines_end < text->next)
+        text->lines_end = text->next;
+    text->line = line;
+}
+
+bool imki_csv_is_value(imki_log_piece cell)
+{
+    double value;
+    char text[IMKI_CSV_CELL];
+    if (imki_log_piece_is_number(cell, &value) || imki_log_piece_is_missing(cell) ||
+        imki_log_date_read(cell.begin, cell.end, NULL))
+        return true;
+    imki_log_piece_copy(text, sizeof text, cell);
+    char *comma = strchr(text, ',');
+    if (!comma || (size_t)(cell.end - cell.begin) >= sizeof text)
+        return false;
+    *comma = '.';
+    return imki_log_piece_is_number((imki_log_piece){text, text + strlen(text)}, &value);
+}
+
+/* A row and no header: values, and one of them is more than a word for none. */
+static bool is_row(const imki_log_piece *cells, size_t count)
+{
+    bool any = false;
+    for (size_t i = 0; i < count; i++) {
+        if (!imki_csv_is_value(cells[i]))
+            return false;
+        any = any || !imki_log_piece_is_missing(cells[i]);
+    }
+    return any;
+}
+
+/* ------------------------------------------------------------------------- programs' own headers
+ */
+
+static bool starts(imki_log_piece line, const char *text)
+{
+    const size_t length = strlen(text);
+    return (size_t)(line.end - line.begin) >= length && memcmp(line.begin, text, length) == 0;
+}
+
+/* Scales of a Gyroflow log: "gscale,0.001". Times are in ms unless it says otherwise [GCSV]. */
+typedef struct gcsv {
+    double time, gyro, accel, mag;
+} gcsv;
+
+static void take_scale(imki_log_piece line, const char *key, double *scale)
+{
+    double value;
+    const size_t length = strlen(key);
+    if (!starts(line, key) || line.begin[length] != ',')
+        return;
+    const imki_log_piece number = {line.begin + length + 1, line.end};
+    if (imki_log_piece_is_number(number, &value) && value > 0)
+        *scale = value;
+}
+
+/* Lines of a name and a value, up to the names of the columns. */
+static imk_status read_gcsv(imk_log_reader *reader, imki_log_piece *line, bool *whole, bool *found,
+                            gcsv *scales, imk_error *error)
+{
+    do {
+        const imk_status status = imki_csv_line(&reader->text, line, whole, found, NULL, error);
+        if (status != IMK_OK)
+            return status;
+        take_scale(*line, "tscale", &scales->time);
+        take_scale(*line, "gscale", &scales->gyro);
+        take_scale(*line, "ascale", &scales->accel);
+        take_scale(*line, "mscale", &scales->mag);
+    } while (*found && !starts(*line, "t,") && !starts(*line, "time,"));
+    return IMK_OK;
+}
+
+static void apply_gcsv(imki_csv_header *header, const gcsv *scales)
+{
+    static const struct {
+        const char *from, *to;
+    } names[] = {{"t", "time [s]"},        {"time", "time [s]"},     {"gx", "gyro_x [rad/s]"},
+                 {"rx", "gyro_x [rad/s]"}, {"gy", "gyro_y [rad/s]"}, {"ry", "gyro_y [rad/s]"},
+                 {"gz", "gyro_z [rad/s]"}, {"rz", "gyro_z [rad/s]"}, {"ax", "accel_x [g]"},
+                 {"ay", "accel_y [g]"},    {"az", "accel_z [g]"},    {"mx", "mag_x [gauss]"},
+                 {"my", "mag_y [gauss]"},  {"mz", "mag_z [gauss]"}};
+    for (size_t i = 0; i < header->count; i++)
+        for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
+            char name[16];
+            imki_log_piece_copy(name, sizeof name, header->cell[i]);
+            if (strcmp(name, names[k].from) != 0)
+                continue;
+            const char kind = names[k].to[0];
+            header->scale[i] = kind == 't'   ? scales->time
+                               : kind == 'g' ? scales->gyro
+                               : kind == 'a' ? scales->accel
+                                             : scales->mag;
+            header->cell[i] = (imki_log_piece){names[k].to, names[k].to + strlen(names[k].to)};
+            header->replaced = true;
+            break;
+        }
+}
+
+/* Step over what stands before the header: Excel's "sep=;", the lines of a Blackbox log. */
+static imk_status skip_preamble(imk_log_reader *reader, imki_log_piece *line, bool *whole,
+                                bool *found, imk_error *error)
+{
+    imk_status status = IMK_OK;
+    while (status == IMK_OK && *found && (starts(*line, "sep=") || starts(*line, "\"sep=")))
+        status = imki_csv_line(&reader->text, line, whole, found, NULL, error);
+    if (*found && starts(*line, "\"Product\",\"Blackbox"))
+        while (status == IMK_OK && *found && !starts(*line, "\"loopIteration\"") &&
+               !starts(*line, "loopIteration"))
+            status = imki_csv_line(&reader->text, line, whole, found, NULL, error);
+    return status;
+}
+
+/* ---------------------------------------------------------------------------- where the names are
+ */
+
+static imk_status keep_header(imki_csv_header *header, imki_log_piece line, char separator,
+                              imk_error *error)
+{
+    free(header->line);
+    header->line = copy_line(line);
+    if (!header->line)
+        return no_memory(error);
+    header->count = imki_log_split(header->line, header->line + strlen(header->line), separator,
+                                   IMK_LOG_COLUMNS_MAX, header->cell);
+    return IMK_OK;
+}
+
+/* Is the last comment before the first row its header? "# time [s], gyro_x [deg/s], …" */
+static bool is_comment_header(const char *comment, imki_log_piece row, char *separator,
+                              imki_log_piece *names)
+{
+    const char *begin = comment + strspn(comment, " \t#%/"), *end = begin + strlen(begin);
+    imki_log_piece cells[IMK_LOG_COLUMNS_MAX];
+    imki_log_cell named[IMK_LOG_COLUMNS_MAX];
+    const char candidates[2] = {imki_log_find_separator(begin, end), *separator};
+    for (int k = 0; k < 2; k++) {
+        const size_t count = imki_log_split(begin, end, candidates[k], IMK_LOG_COLUMNS_MAX, cells);
+        imki_log_piece due[IMK_LOG_COLUMNS_MAX];
+        if (count > IMK_LOG_COLUMNS_MAX || count < 2 ||
+            imki_log_split(row.begin, row.end, candidates[k], IMK_LOG_COLUMNS_MAX, due) != count)
+            continue;
+        imki_log_cells_name(cells, count, named);
+        for (size_t i = 0; i < count; i++)
+            if (named[i].name.kind) {
+                *separator = candidates[k];
+                *names = (imki_log_piece){begin, end};
+                return true;
+            }
+    }
+    return false;
+}
+
+/* A row with texts in it, below a comment that is its header. */
+static bool is_row_below(const imki_csv_comment *comment, imki_log_piece line,
+                         const imki_log_piece *cells, size_t count)
+{
+    imki_log_cell named[IMK_LOG_COLUMNS_MAX];
+    imki_log_piece names;
+    char separator = imki_log_find_separator(line.begin, line.end);
+    bool number = false, known = false;
+    double value;
+    imki_log_cells_name(cells, count, named);
+    for (size_t i = 0; i < count; i++) {
+        number = number || imki_log_piece_is_number(cells[i], &value);
+        known = known || named[i].name.kind;
+    }
+    return number && !known && comment->text &&
+           is_comment_header(comment->text, line, &separator, &names);
+}
+
+static imk_status refuse_headless(size_t count, imk_error *error)
+{
+    static const char sensors[] = "gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z";
+    char expected[300];
+    if (count == 6 || count == 7)
+        snprintf(expected, sizeof expected,
+                 "add --columns with the names in their order, such as \"%s%s\"; - skips a column, "
+                 "and units as in gyro_x [UNIT]%s",
+                 count == 7 ? "time," : "", sensors,
+                 count == 7 ? "" : "; add --rate RATE, too (samples per second)");
+    else
+        snprintf(expected, sizeof expected,
+                 "add --columns with %zu names in their order (time,gyro_x,...; - skips one), and "
+                 "units as in gyro_x [UNIT]",
+                 count);
+    return imk_error_set(error, IMK_ERROR_COLUMN, "", "no header: the first row is all numbers",
+                         expected);
+}
+
+/* ------------------------------------------------------------------------------ other names, units
+ */
+
+/* Names of a list, with the unit of the file's header where they have none. */
+static imk_status replace_names(const char *columns, bool has_header, imki_csv_header *header,
+                                imk_error *error)
+{
+    imki_log_piece names[IMK_LOG_COLUMNS_MAX];
+    const size_t count = header->count;
+    const size_t name_count =
+        imki_log_split(columns, columns + strlen(columns), ',', IMK_LOG_COLUMNS_MAX, names);
+    if (name_count != count) {
+        char found[96], expected[96];
+        snprintf(found, sizeof found, "the list has %zu name%s", name_count,
+                 name_count == 1 ? "" : "s");
+        snprintf(expected, sizeof expected,
+                 "%zu, one for each column of the log (- skips a column)", count);
+        return imk_error_set(error, IMK_ERROR_COLUMN, "columns", found, expected);
+    }
+    for (size_t i = 0; i < count; i++) {
+        imki_log_piece name = names[i], unit, own = header->cell[i], own_unit;
+        char first[48], second[60] = "";
+        const bool skip = name.end - name.begin == 1 && *name.begin == '-';
+        imki_log_unit_split(&name, &unit);
+        imki_log_unit_split(&own, &own_unit);
+        imki_log_piece_copy(first, sizeof first, name);
+        if (unit.begin < unit.end)
+            imki_log_piece_copy(second, sizeof second, unit);
+        else if (has_header && !skip)
+            imki_log_piece_copy(second, sizeof second, own_unit);
+        snprintf(header->text[i], sizeof header->text[i], second[0] ? "%s [%s]" : "%s", first,
+                 second);
+        header->cell[i] =
+            (imki_log_piece){header->text[i], header->text[i] + strlen(header->text[i])};
+    }
+    header->replaced = true;
+    return IMK_OK;
+}
+
+/* A line of units below that of names: "s,deg/s,deg/s". Words for no unit may stand among them. */
+static bool is_unit_row(const imki_csv_header *header, const imki_log_piece *cells, size_t count)
+{
+    static const char *const none[] = {"", "-", "none", "n/a", "1", "text", "bool", "flags"};
+    size_t units = 0;
+    for (size_t i = 0; i < count; i++) {
+        char text[40];
+        imki_log_piece cell = cells[i], own, name = header->cell[i];
+        imki_log_unit_split(&name, &own);
+        if (own.begin < own.end) /* the names have them */
+            return false;
+        if (cell.end - cell.begin >= 2 && (*cell.begin == '[' || *cell.begin == '('))
+            cell = (imki_log_piece){cell.begin + 1, cell.end - 1};
+        imki_log_piece_copy(text, sizeof text, cell);
+        bool is_none = false;
+        for (size_t k = 0; k < sizeof none / sizeof none[0]; k++)
+            is_none = is_none || strcmp(text, none[k]) == 0;
+        imk_unit unit;
+        const bool is_unit = imk_unit_parse(cell.begin, cell.end, &unit, NULL) == IMK_OK;
+        if (!is_none && !is_unit)
+            return false;
+        units += is_unit && !is_none;
+    }
+    return units > 0;
+}
+
+/* Take the line behind the header if it is one of units. */
+static imk_status take_units(imk_log_reader *reader, imki_csv_header *header, imk_error *error)
+{
+    imki_log_text *text = &reader->text;
+    imki_log_piece line, cells[IMK_LOG_COLUMNS_MAX];
+    const size_t number = text->line;
+    bool whole, found;
+    text->hold = text->next;
+    const imk_status status = imki_csv_line(text, &line, &whole, &found, NULL, error);
+    if (status != IMK_OK)
+        return status;
+    const size_t count = found ? imki_log_split(line.begin, line.end, reader->layout.separator,
+                                                IMK_LOG_COLUMNS_MAX, cells)
+                               : 0;
+    if (count != header->count || !is_unit_row(header, cells, count)) {
+        imki_csv_go_back(text, number);
+        text->hold = NULL;
+        return IMK_OK;
+    }
+    text->hold = NULL;
+    header->units = copy_line(line);
+    if (!header->units)
+        return no_memory(error);
+    for (size_t i = 0; i < count; i++) {
+        char name[48], unit[60];
+        imki_log_piece cell = cells[i];
+        if (cell.end - cell.begin >= 2 && (*cell.begin == '[' || *cell.begin == '('))
+            cell = (imki_log_piece){cell.begin + 1, cell.end - 1};
+        imki_log_piece_copy(name, sizeof name, header->cell[i]);
+        imki_log_piece_copy(unit, sizeof unit, cell);
+        const bool none = !unit[0] || strcmp(unit, "-") == 0;
+        snprintf(header->text[i], sizeof header->text[i], none ? "%s" : "%s [%s]", name, unit);
+        header->cell[i] =
+            (imki_log_piece){header->text[i], header->text[i] + strlen(header->text[i])};
+    }
+    return IMK_OK;
+}
+
+/* Names and units of the program that wrote the file. */
+static void apply_dialect(imki_csv_header *header)
+{
+    char name[IMK_LOG_COLUMNS_MAX][48];
+    const char *names[IMK_LOG_COLUMNS_MAX];
+    for (size_t i = 0; i < header->count; i++) {
+        imki_log_piece cell = header->cell[i], unit;
+        imki_log_unit_split(&cell, &unit);
+        imki_log_piece_copy(name[i], sizeof name[i], cell);
+        names[i] = name[i];
+    }
+    const imki_log_dialect *dialect = imki_log_dialect_of(header->count, names);
+    for (size_t i = 0; dialect && i < header->count; i++)
+        for (const imki_log_rename *r = dialect->name; r->from; r++)
+            if (strcmp(r->from, names[i]) == 0)
+                header->cell[i] = (imki_log_piece){r->to, r->to + strlen(r->to)};
+}
+
+/* ------------------------------------------------------------------------------------------- read
+ */
+
+/* The first line is a row: names are in a comment, in the settings or of the format. */
+static imk_status name_row(imk_log_reader *reader, imki_log_piece line,
+                           const imki_csv_comment *comment, char separator, imk_error *error)
+{
+    imki_csv_header *header = &((imki_csv *)reader->state)->header;
+    const imk_log_settings *settings = &reader->settings;
+    const imki_log_dialect *dialect =
+        settings->format ? imki_log_dialect_named(settings->format) : NULL;
+    imki_log_piece names;
+    imk_status status;
+    header->is_row = true;
+    header->is_comment =
+        comment->text && is_comment_header(comment->text, line, &separator, &names);
+    if (header->is_comment)
+        header->number = comment->line;
+    reader->layout.separator = separator;
+    status = keep_header(header, header->is_comment ? names : line, separator, error);
+    if (status != IMK_OK)
+        return status;
+    if (dialect)
+        return replace_names(dialect->columns, false, header, error);
+    if (settings->columns)
+        return replace_names(settings->columns, header->is_comment, header, error);
+    if (!header->is_comment)
+        return refuse_headless(header->count, error);
+    apply_dialect(header);
+    return IMK_OK;
+}
+
+static imk_status name_header(imk_log_reader *reader, imki_log_piece line, char separator,
+                              const gcsv *scales, imk_error *error)
+{
+    imki_csv_header *header = &((imki_csv *)reader->state)->header;
+    reader->layout.separator = separator;
+    imk_status status = keep_header(header, line, separator, error);
+    if (status == IMK_OK)
+        status = take_units(reader, header, error);
+    if (status != IMK_OK)
+        return status;
+    if (reader->settings.columns)
+        return replace_names(reader->settings.columns, true, header, error);
+    if (scales)
+        apply_gcsv(header, scales);
+    else
+        apply_dialect(header);
+    return IMK_OK;
+}
+
+static imk_status read_names(imk_log_reader *reader, imki_csv_comment *comment, imk_error *error)
+{
+    imki_log_text *text = &reader->text;
+    imki_csv_header *header = &((imki_csv *)reader->state)->header;
+    imki_log_piece line, cells[IMK_LOG_COLUMNS_MAX];
+    gcsv scales = {.time = 1e-3, .gyro = 1, .accel = 1, .mag = 1};
+    bool whole, found, is_gcsv = false;
+    imk_status status = imki_csv_line(text, &line, &whole, &found, comment, error);
+    if (status == IMK_OK && found)
+        status = skip_preamble(reader, &line, &whole, &found, error);
+    if (status == IMK_OK && found &&
+        (starts(line, "GYROFLOW IMU LOG") || starts(line, "CAMERA IMU LOG"))) {
+        is_gcsv = true;
+        status = read_gcsv(reader, &line, &whole, &found, &scales, error);
+    }
+    if (status != IMK_OK)
+        return status;
+    if (!found)
+        return imk_error_set(error, IMK_ERROR_EMPTY, "", "the log has no header and no rows",
+                             "a header and rows of numbers");
+    header->number = text->line - 1;
+    const char separator = imki_log_find_separator(line.begin, line.end);
+    const size_t count =
+        imki_log_split(line.begin, line.end, separator, IMK_LOG_COLUMNS_MAX, cells);
+    if (count > IMK_LOG_COLUMNS_MAX)
+        return imk_error_set(error, IMK_ERROR_COLUMN, "", "the log has more than 64 columns",
+                             "at most 64 columns");
+    if (!is_row(cells, count) && !is_row_below(comment, line, cells, count))
+        return name_header(reader, line, separator, is_gcsv ? &scales : NULL, error);
+    status = name_row(reader, line, comment, separator, error);
+    text->next = line.begin; /* it is the first row */
+    text->line--;
+    return status;
+}
+
+imk_status imki_csv_header_read(imk_log_reader *reader, imk_error *error)
+{
+    imki_csv_header *header = &((imki_csv *)reader->state)->header;
+    imki_csv_comment comment = {.text = NULL};
+    for (size_t i = 0; i < IMK_LOG_COLUMNS_MAX; i++)
+        header->scale[i] = 1;
+    const imk_status status = read_names(reader, &comment, error);
+    free(comment.text);
+    return status;
+}
