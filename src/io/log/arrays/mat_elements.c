@@ -29,7 +29,7 @@ imk_status imki_mat_tag_read(imki_mat_bytes *bytes, uint64_t at, uint64_t end, i
                              imk_error *error)
 {
     if (at > end || end - at < sizeof tag->head)
-        return refuse("the MAT-file ends within an array", error);
+        return refuse("the MAT-file is cut short within an array", error);
     const imk_status status =
         imki_packed_read(&bytes->part, at, tag->head, sizeof tag->head, error);
     if (status != IMK_OK)
@@ -42,7 +42,7 @@ imk_status imki_mat_tag_read(imki_mat_bytes *bytes, uint64_t at, uint64_t end, i
     if (tag->is_short && tag->size > 4)
         return refuse("an array of the MAT-file is damaged", error);
     if (tag->size > end - tag->data)
-        return refuse("the MAT-file ends within an array", error);
+        return refuse("the MAT-file is cut short within an array", error);
     const uint64_t padding = tag->type == IMKI_MAT_COMPRESSED ? 0 : (8 - tag->size % 8) % 8;
     tag->next = tag->is_short ? at + 8 : tag->data + tag->size + padding;
     return IMK_OK;

@@ -102,13 +102,14 @@ static imk_status add_unit(reading *r, const position *at, const imki_mat_head *
     static const char units[] = "units";
     const size_t length = strlen(at->group), own = sizeof units - 1;
     const char *parent = length >= own ? at->group + length - own : "";
-    imki_mat_tag tag;
+    imki_mat_tag tag = {.type = 0};
     unsigned char text[80];
     if (strcmp(parent, units) != 0 || r->unit_count == UNITS_MAX ||
         (parent > at->group && parent[-1] != '.'))
         return IMK_OK;
     imk_status status = imki_mat_tag_read(&r->bytes, head->content, end, &tag, error);
-    const size_t width = status == IMK_OK && tag.type == IMKI_MAT_UINT16 ? 2 : 1;
+    const bool wide = tag.type == IMKI_MAT_UINT16 || tag.type == IMKI_MAT_UTF16;
+    const size_t width = status == IMK_OK && wide ? 2 : 1;
     if (status == IMK_OK && tag.size <= sizeof text)
         status = imki_mat_data(&r->bytes, &tag, text, (size_t)tag.size, error);
     if (status != IMK_OK || tag.size > sizeof text)

@@ -34,13 +34,21 @@ static void add_tag(bytes *b, uint32_t type, size_t size)
     b->size += 8;
 }
 
-/* @param data  up to 64 bytes */
+/* What has up to 4 bytes is in the tag: other programs take that for granted.
+ * @param data  up to 64 bytes */
 static void add_element(bytes *b, uint32_t type, const void *data, size_t size)
 {
-    add_tag(b, type, size);
-    memset(b->at + b->size, 0, padded(size));
+    const bool is_short = size > 0 && size <= 4;
+    memset(b->at + b->size, 0, 8);
+    if (is_short)
+        imki_put_number(b->at + b->size, type | (uint32_t)size << 16, 4);
+    else
+        add_tag(b, type, size);
+    b->size += is_short ? 4 : 0;
+    const size_t room = is_short ? 4 : padded(size);
+    memset(b->at + b->size, 0, room);
     memcpy(b->at + b->size, data, size);
-    b->size += padded(size);
+    b->size += room;
 }
 
 /* Flags, dimensions, name. */
