@@ -61,6 +61,15 @@ int log_input_check(const log_input *input)
     return -1;
 }
 
+int log_table_check(const char *path)
+{
+    const imk_log_format *format = imk_log_format_of(path);
+    return format == imk_log_format_get(0)
+               ? -1
+               : command_misused("-o %s: a table is written as text, not as %s: name it in .csv",
+                                 path, format->title);
+}
+
 void log_input_note_units(const imk_log_reader *reader, const imk_log_settings *settings)
 {
     static const struct {

@@ -35,6 +35,9 @@ int log_input_load(const log_input *input, const char *path, imk_even_record *ch
 int log_input_check(const log_input *input);
 /* Open a log for a job. @param again  the job may rewind it. @return -1 or the exit code */
 int log_input_open(const log_input *input, const char *path, bool again, imk_log_reader **reader);
+/* Refuse a table, which is text, under a name of another format of logs. @param path  NULL: none
+ * @return -1 or the exit code */
+int log_table_check(const char *path);
 /* An option about units that the header makes needless changes nothing; it is told. Of a log opened
  * in another way. */
 void log_input_note_units(const imk_log_reader *reader, const imk_log_settings *settings);
