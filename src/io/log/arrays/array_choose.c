@@ -211,16 +211,27 @@ static imk_status add_streams(imk_log_reader *reader, const imki_array_list *lis
     return status;
 }
 
+/* What to do about arrays that cannot be read, by the word that their kind has. */
 static imk_status refuse_others(const imki_array_list *list, imk_error *error)
 {
+    static const struct {
+        const char *word, *remedy;
+    } remedies[] = {
+        {"MATLAB", "write it in MATLAB as a CSV: writetable(TABLE, 'log.csv'), for a timetable "
+                   "writetimetable()"},
+        {"record", "write its fields: numpy.savez(FILE, **{n: table[n] for n in "
+                   "table.dtype.names})"},
+        {"compression", "write it with gzip, where its filter is installed: h5repack -f GZIP=4 IN "
+                        "OUT"},
+        {"another file", "write the values into the file itself"},
+        {"", "copy the file again, or write it with the usual compression"}};
     char found[96];
     const imki_array_other *other = &list->other[0];
-    snprintf(found, sizeof found, "\"%.32s\" is a %.40s", other->name, other->kind);
-    return imk_error_set(error, IMK_ERROR_EMPTY, "", found,
-                         strncmp(other->kind, "MATLAB", 6) == 0
-                             ? "write it in MATLAB as a CSV: writetable(TABLE, 'log.csv'), for a "
-                               "timetable writetimetable()"
-                             : "arrays of numbers with names of gyros or accelerometers");
+    size_t i = 0;
+    while (!strstr(other->kind, remedies[i].word))
+        i++;
+    snprintf(found, sizeof found, "\"%.36s\" is a %.47s", other->name, other->kind);
+    return imk_error_set(error, IMK_ERROR_EMPTY, "", found, remedies[i].remedy);
 }
 
 /* All units that are missing, in one message. */

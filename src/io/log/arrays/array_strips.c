@@ -98,6 +98,22 @@ static uint64_t end_of(const imki_array_strips *state, const imki_strip *strip)
     return strip->begin + state->rows.rows * strip->record;
 }
 
+/* Bytes before the first row are read, too, so that the checksum holds. */
+static imk_status open_strip(const imki_packed *source, imki_strip *strip, imk_error *error)
+{
+    imk_status status = imki_packed_open(source, &strip->part, error);
+    const size_t step = BLOCK_ROWS * strip->record;
+    strip->buffer = malloc(step);
+    if (status == IMK_OK && !strip->buffer)
+        status = imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    while (status == IMK_OK && source->has_crc && strip->part.place < strip->begin) {
+        const uint64_t left = strip->begin - strip->part.place;
+        status = imki_packed_read(&strip->part, strip->part.place, strip->buffer,
+                                  left < step ? (size_t)left : step, error);
+    }
+    return status;
+}
+
 static imk_status open_strips(imki_array_strips *state, imk_error *error)
 {
     imk_status status = IMK_OK;
@@ -113,15 +129,11 @@ static imk_status open_strips(imki_array_strips *state, imk_error *error)
         const bool packed = state->source[source].packing != IMKI_PLAIN;
         if (packed && strips > 1)
             status = unpack(state, source, most, error);
+        state->source[source].has_crc = state->source[source].has_crc && strips == 1;
         state->packed = state->packed || (packed && strips == 1);
     }
-    for (size_t i = 0; i < state->strip_count && status == IMK_OK; i++) {
-        imki_strip *strip = &state->strip[i];
-        strip->buffer = malloc(BLOCK_ROWS * strip->record);
-        status = strip->buffer
-                     ? imki_packed_open(&state->source[strip->source], &strip->part, error)
-                     : imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
-    }
+    for (size_t i = 0; i < state->strip_count && status == IMK_OK; i++)
+        status = open_strip(&state->source[state->strip[i].source], &state->strip[i], error);
     return status;
 }
 

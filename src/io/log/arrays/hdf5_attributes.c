@@ -98,7 +98,7 @@ const char *imki_hdf5_obstacle(hid_t dataset, uint64_t values, uint64_t file_siz
         const H5Z_filter_t filter =
             H5Pget_filter2(how, (unsigned)i, &flags, &count, NULL, 0, NULL, &settings);
         if (filter >= 0 && H5Zfilter_avail(filter) <= 0)
-            obstacle = "dataset of a compression that libhdf5 does not have";
+            obstacle = "dataset of a compression libhdf5 lacks";
     }
     H5Pclose(how);
     if (!obstacle && values / RATIO > file_size)

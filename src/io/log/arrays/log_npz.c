@@ -150,7 +150,7 @@ static imk_status add_array(reading *r, const imki_zip_member *member, const imk
     }
     imki_copy_text(array.name, sizeof array.name, slash ? slash + 1 : name);
     if (npy->type[0] == '\0')
-        imki_array_note(&state->rows.list, name, "array of records");
+        imki_array_note(&state->rows.list, name, "record array");
     if (!find_type(npy, &array) || !find_extent(npy, &array))
         return IMK_OK;
     imk_status status = check_size(member, &array, error);
@@ -191,8 +191,8 @@ static imk_status visit(void *context, const imki_zip_member *member, imk_error 
     if (member->encrypted || (member->method != 0 && member->method != 8)) {
         imki_array_strips *state = r->reader->state;
         imki_array_note(&state->rows.list, member->name,
-                        member->encrypted ? "encrypted member"
-                                          : "member that is compressed in another way");
+                        member->encrypted ? "member that is encrypted"
+                                          : "member that is packed by another method");
         return IMK_OK;
     }
     const imki_packed packed = {.file = imki_input_file(r->reader->text.input),
