@@ -535,8 +535,8 @@ static void npy_heads(void **state)
 static void reader_and_writer_agree(void **state)
 {
     (void)state;
-    static const char *const names[] = {"a.csv", "a.csv.gz", "a.csv.zst",
-                                        "a.npy", "a.npz",    "a.mat"};
+    static const char *const names[] = {"a.csv", "a.csv.gz", "a.csv.zst", "a.npy",
+                                        "a.npz", "a.mat",    "a.h5"};
     make_log();
     log_data[2][777] = -1.5; /* the reader takes lines of this length in its fast way */
     for (size_t way = 0; way < sizeof names / sizeof names[0]; way++) {

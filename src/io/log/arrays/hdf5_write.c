@@ -82,7 +82,7 @@ static void make(void *context)
     H5Pclose(creation);
     H5Pclose(access);
     /* The values follow each other up to the end, behind all else. */
-    w->front = store->rows > 0 ? w->place[0] : w->image.size;
+    w->front = store->rows > 0 ? w->place[0] : end;
     uint64_t place = w->front;
     w->done = w->done && w->image.size <= place;
     for (size_t i = 0; i < store->columns && store->rows > 0; i++, place += store->rows * 8)
