@@ -38,7 +38,7 @@ static bool same_text(const char *a, const char *b)
 /* The quantity of a name as the header of a CSV would have it. */
 static imk_quantity quantity_of(const char *name)
 {
-    const imk_log_settings none = imk_log_default();
+    static const imk_log_settings none;
     imk_log_column column;
     (void)imki_log_column_make((imki_log_piece){name, name + strlen(name)}, &none, &column, NULL);
     return column.quantity;
