@@ -3,7 +3,7 @@
  * anything of it, the head, and PATH.part. Checksums that a stranger would get right are put right
  * here, so that what stands behind them is reached.
  * Reads: src/io/campaign/campaign_seal.c src/io/campaign/campaign_head.c
- * src/io/campaign/campaign_part.c src/io/campaign/campaign_file.c */
+ * src/io/campaign/campaign_part.c src/io/file/file_bytes.c */
 #define _POSIX_C_SOURCE 200809L
 #include "harness.h"
 

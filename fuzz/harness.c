@@ -30,6 +30,29 @@ void require_told(imk_status status, const imk_error *error)
     require(length > 0 && length < sizeof text && strlen(text) == length);
 }
 
+void read_log(const char *path, const imk_log_settings *settings, size_t piece)
+{
+    enum { ROWS = 64, ROWS_MOST = 1 << 16 /* a bomb is not read to its end */ };
+    static double values[IMK_LOG_COLUMNS_MAX][ROWS];
+    double *columns[IMK_LOG_COLUMNS_MAX];
+    size_t rows = 0, total = 0;
+    imk_log_reader *reader = NULL;
+    imk_error error = {.status = IMK_OK};
+    imk_status status = imk_log_open(path, settings, &reader, &error);
+    require_told(status, &error);
+    for (size_t i = 0; i < IMK_LOG_COLUMNS_MAX; i++)
+        columns[i] = i % 3 == 2 ? NULL : values[i];
+    while (status == IMK_OK && total < ROWS_MOST) {
+        status = imk_log_read(reader, 1 + piece % ROWS, columns, &rows, &error);
+        require_told(status, &error);
+        if (status != IMK_OK || rows == 0)
+            break;
+        total += rows;
+        require(imk_log_findings_get(reader).rows == total);
+    }
+    imk_log_close(reader);
+}
+
 uint32_t choice_of(const uint8_t *data, size_t size)
 {
     uint32_t choice = 0;

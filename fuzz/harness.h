@@ -3,6 +3,7 @@
 #ifndef IMUKIT_FUZZ_HARNESS_H
 #define IMUKIT_FUZZ_HARNESS_H
 
+#include "imukit/log.h"
 #include "imukit/status.h"
 
 #include <stdbool.h>
@@ -21,6 +22,9 @@ static inline void require(bool condition)
 /* A refusal carries its status and makes a message; what was read left the error alone. The error
  * is begun as (imk_error){.status = IMK_OK}. */
 void require_told(imk_status status, const imk_error *error);
+
+/* Open a log, and read it in pieces of up to 64 rows: it is read or refused, told, and counted. */
+void read_log(const char *path, const imk_log_settings *settings, size_t piece);
 
 /* A number that chooses settings: the sum of the bytes, so that a file as it is can be an input. */
 uint32_t choice_of(const uint8_t *data, size_t size);

@@ -234,6 +234,8 @@ static int run(int count, char **words)
     if (code < 0)
         code = command_check_plot(o.plot);
     if (code < 0)
+        code = log_table_check(o.output);
+    if (code < 0)
         code = parse_statistics(o.statistic, &settings);
     if (code < 0)
         code = parse_tau(o.tau, &settings, &times);

@@ -75,6 +75,15 @@ int log_input_check(const log_input *input)
     return -1;
 }
 
+int log_table_check(const char *path)
+{
+    const imk_log_format *format = imk_log_format_of(path);
+    return format == imk_log_format_get(0)
+               ? -1
+               : command_misused("-o %s: a table is written as text, not as %s: name it in .csv",
+                                 path, format->title);
+}
+
 int log_input_open(const log_input *input, const char *path, bool again, imk_log_reader **reader)
 {
     imk_error error;

@@ -37,6 +37,9 @@ int log_input_load(const log_input *input, const char *path, imk_even_record *ch
 int log_input_check(const log_input *input);
 /* Open a log for a job. @param again  the job may rewind it. @return -1 or the exit code */
 int log_input_open(const log_input *input, const char *path, bool again, imk_log_reader **reader);
+/* Refuse a table, which is text, under a name of another format of logs. @param path  NULL: none
+ * @return -1 or the exit code */
+int log_table_check(const char *path);
 /* What a job found, and why it failed: warnings and the error to standard error.
  * @return -1, or the exit code of a status that is no success */
 int log_input_tell(const char *path, const imk_findings *findings, imk_status status,

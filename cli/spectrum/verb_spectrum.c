@@ -156,6 +156,8 @@ static int run(int count, char **words)
     if (code < 0)
         code = command_check_plot(o.plot);
     if (code < 0)
+        code = log_table_check(o.output);
+    if (code < 0)
         code = log_input_check(&o.log);
     if (code < 0 && settings->to > 0 && !(settings->from < settings->to))
         code =

@@ -38,6 +38,13 @@ IMK_API const imk_log_format *imk_log_format_get(size_t index);
  *  not tell.
  *  @param path  may be NULL */
 IMK_API const imk_log_format *imk_log_format_of(const char *path);
+/** Format of a log that is to be written: by the ending of its name; CSV for names without an
+ *  ending, standard output, and what is no regular file, such as a pipe.
+ *  @param path  may be NULL
+ *  @return IMK_ERROR_UNSUPPORTED (an ending of no format, or of one that is only read; the error
+ *          lists the endings) */
+IMK_API imk_status imk_log_format_written(const char *path, const imk_log_format **format,
+                                          imk_error *error);
 /** Format of a log by its first bytes; NULL: they do not tell. */
 IMK_API const imk_log_format *imk_log_format_begun(const char *begin, size_t size);
 /** Format of a name of imk_log_format.name; NULL: there is none. */
@@ -208,10 +215,13 @@ typedef struct imk_log_writer imk_log_writer;
  *  - A path ending in .npy: float64 matrix, rows x columns, C order, little-endian, values in the
  *    units of the columns chosen as for IMK_LOG_SHORTEST; `name [unit]` of each column goes to a
  *    line of FILE.npy.columns, which appears with it.
- *  - Any other path: CSV text, commas, line feeds, `name [unit]` in the header (`name` for a unit
- *    without text). NaN and infinities are written nan, inf, -inf.
- *  - A path that ends in .gz or .zst after that is compressed; "-" and NULL are CSV to standard
- *    output.
+ *  - .npz, .mat (version 5), .h5 and .hdf5: a vector of float64 for each column, with its unit. The
+ *    columns are kept in a temporary file in TMPDIR until the log is finished.
+ *  - .csv, .txt, no ending, "-" and NULL (standard output): CSV text, commas, line feeds, `name
+ *    [unit]` in the header (`name` for a unit without text). NaN and infinities are written nan,
+ *    inf, -inf.
+ *  - A path that ends in .gz or .zst after .csv, .txt, .npy or no ending is compressed.
+ *  - Any other ending is refused (imk_log_format_written()).
  *
  *  @param columns    name and unit of each; values given to imk_log_write() are SI: an increment
  *                    column takes increments of the integral [rad, m/s]. Names are not empty,
@@ -220,7 +230,8 @@ typedef struct imk_log_writer imk_log_writer;
  *  @param row_count  number of rows if known, else 0. Only a .npy that is not a plain file (a pipe,
  *                    compressed) needs it, and then exactly.
  *  @return IMK_ERROR_OPEN, IMK_ERROR_COLUMN (a name), IMK_ERROR_ARGUMENT (a unit or decimals),
- *          IMK_ERROR_UNSUPPORTED (a .npy that needs row_count), IMK_ERROR_MEMORY */
+ *          IMK_ERROR_UNSUPPORTED (the ending; a .npy that needs row_count; more rows than a .mat
+ *          holds), IMK_ERROR_WRITE (no temporary file), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_create(const char *path, size_t column_count,
                                   const imk_log_column *columns, imk_log_precision precision,
                                   const int *decimals, uint64_t row_count, imk_log_writer **writer,

@@ -53,7 +53,7 @@ typedef struct call {
 } call;
 
 /* Where a call comes from. libhdf5 is left alone: it does not survive a call that fails, and is
- * entered only when there is memory enough (src/io/campaign/campaign_hdf5.c). */
+ * entered only when there is memory enough (src/io/file/hdf5_use.c). */
 static bool is_spared(void *const *frame, int frames)
 {
     for (int i = 0; i < frames; i++) {

@@ -8,95 +8,27 @@
  * full disk is never met within libhdf5, which could not let go of a file that it cannot complete.
  */
 #include "campaign_internal.h"
+#include "io/file/hdf5_image_internal.h"
 
 #include <hdf5.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A path at which no file can be, for libhdf5 looks first: nothing is in /dev/null. */
-static const char nowhere[] = "/dev/null/imukit";
 enum { FORMAT_VERSION = 1 };
-
-typedef struct image {
-    unsigned char *at;
-    size_t size;
-} image;
 
 typedef struct writing {
     const imki_record *record;
-    image image;
+    imki_hdf5_image image;
     hid_t file, scalar, contiguous; /* the file, and how everything in it is */
     uint64_t values;                /* where they begin */
     bool done;
 } writing;
 
-/* ---- memory ---- */
-
-static void *extend(void *at, size_t size, H5FD_file_image_op_t operation, void *context)
-{
-    image *i = context;
-    unsigned char *more = realloc(at, size);
-    (void)operation;
-    if (more)
-        *i = (image){more, size};
-    return more;
-}
-
-static void *begin(size_t size, H5FD_file_image_op_t operation, void *context)
-{
-    return extend(NULL, size, operation, context);
-}
-
-/* The bytes are ours. */
-static herr_t keep(void *at, H5FD_file_image_op_t operation, void *context)
-{
-    (void)at;
-    (void)operation;
-    (void)context;
-    return 0;
-}
-
-static void *share(void *context)
-{
-    return context;
-}
-
-static herr_t unshare(void *context)
-{
-    (void)context;
-    return 0;
-}
-
 /* ---- parts ---- */
-
-/* @return H5I_INVALID_HID, which all that takes it refuses */
-static hid_t text_type(size_t size)
-{
-    const hid_t type = H5Tcopy(H5T_C_S1);
-    if (H5Tset_size(type, size) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0)
-        return type;
-    H5Tclose(type);
-    return H5I_INVALID_HID;
-}
-
-static bool put_attribute(hid_t object, const char *name, hid_t type, hid_t space,
-                          const void *values)
-{
-    const hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    const bool put = H5Awrite(attribute, type, values) >= 0;
-    return H5Aclose(attribute) >= 0 && put;
-}
 
 static bool put_integer(const writing *w, const char *name, uint64_t number)
 {
-    return put_attribute(w->file, name, H5T_STD_U64LE, w->scalar, &number);
-}
-
-static bool put_text(const writing *w, hid_t object, const char *name, const char *text)
-{
-    const hid_t type = text_type(strlen(text) + 1);
-    const bool put = put_attribute(object, name, type, w->scalar, text);
-    return H5Tclose(type) >= 0 && put;
+    return imki_hdf5_put_attribute(w->file, name, H5T_STD_U64LE, w->scalar, &number);
 }
 
 /* Texts of equal size, in one attribute. */
@@ -112,8 +44,8 @@ static bool put_texts(hid_t object, const char *name, size_t count, const char *
         return false;
     for (size_t i = 0; i < count; i++)
         memcpy(values + i * size, texts[i], strlen(texts[i]));
-    const hid_t type = text_type(size), space = H5Screate_simple(1, &extent, NULL);
-    const bool put = put_attribute(object, name, type, space, values);
+    const hid_t type = imki_hdf5_text_type(size), space = H5Screate_simple(1, &extent, NULL);
+    const bool put = imki_hdf5_put_attribute(object, name, type, space, values);
     free(values);
     return H5Sclose(space) >= 0 && H5Tclose(type) >= 0 && put;
 }
@@ -127,7 +59,7 @@ static bool put_dataset(const writing *w, const char *name, hid_t type, hid_t sp
                         const char *unit, const void *values)
 {
     const hid_t set = make_dataset(w, name, type, space);
-    const bool put = (!unit || put_text(w, set, "unit", unit)) &&
+    const bool put = (!unit || imki_hdf5_put_text(set, "unit", unit)) &&
                      H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
     return H5Dclose(set) >= 0 && put;
 }
@@ -144,9 +76,9 @@ static bool put_list(const writing *w, const char *name, hid_t type, size_t coun
 static bool put_small_parts(const writing *w)
 {
     const imk_campaign *c = &w->record->campaign;
-    const hid_t type = text_type(strlen(c->parameters) + 1);
+    const hid_t type = imki_hdf5_text_type(strlen(c->parameters) + 1);
     const bool put = put_integer(w, "imukit_format", FORMAT_VERSION) &&
-                     put_text(w, w->file, "imukit", c->version) &&
+                     imki_hdf5_put_text(w->file, "imukit", c->version) &&
                      put_integer(w, "seed", c->seed) && put_integer(w, "run_count", c->run_count) &&
                      put_dataset(w, "parameters", type, w->scalar, NULL, c->parameters) &&
                      put_list(w, "time", H5T_IEEE_F64LE, c->time_count, "s", c->time) &&
@@ -171,22 +103,6 @@ static bool put_error(writing *w)
 }
 
 /* ---- the file ---- */
-
-/* Every piece where the one before ends, from a multiple of 8 bytes on: nothing is left open behind
- * the values, and numbers may be used where they lie. Without a sieve buffer no more of the values
- * is written than the one. */
-static hid_t access_properties(image *i)
-{
-    H5FD_file_image_callbacks_t callbacks = {begin, NULL, extend, keep, share, unshare, i};
-    const hid_t list = H5Pcreate(H5P_FILE_ACCESS);
-    if (H5Pset_fapl_core(list, 1, 0) >= 0 && H5Pset_file_image_callbacks(list, &callbacks) >= 0 &&
-        H5Pset_libver_bounds(list, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0 &&
-        H5Pset_meta_block_size(list, 0) >= 0 && H5Pset_small_data_block_size(list, 0) >= 0 &&
-        H5Pset_sieve_buf_size(list, 1) >= 0 && H5Pset_alignment(list, 1, 8) >= 0)
-        return list;
-    H5Pclose(list);
-    return H5I_INVALID_HID;
-}
 
 /* Nothing that depends on when the file is made. */
 static hid_t creation_properties(void)
@@ -214,12 +130,13 @@ static void make(void *context)
 {
     writing *w = context;
     const uint64_t size = w->record->runs * imki_run_size(&w->record->campaign);
-    const hid_t access = access_properties(&w->image), creation = creation_properties();
+    const hid_t access = imki_hdf5_image_access(&w->image), creation = creation_properties();
     hsize_t end = 0;
     w->scalar = H5Screate(H5S_SCALAR);
     w->contiguous = dataset_properties();
-    w->file = access < 0 || creation < 0 ? H5I_INVALID_HID
-                                         : H5Fcreate(nowhere, H5F_ACC_TRUNC, creation, access);
+    w->file = access < 0 || creation < 0
+                  ? H5I_INVALID_HID
+                  : H5Fcreate(imki_hdf5_nowhere, H5F_ACC_TRUNC, creation, access);
     if (w->file >= 0 && w->scalar >= 0 && w->contiguous >= 0) {
         const bool put = put_small_parts(w) && put_error(w) && H5Fget_filesize(w->file, &end) >= 0;
         w->done = H5Fclose(w->file) >= 0 && put;

@@ -10,6 +10,9 @@
 
 #include "imukit/campaign.h"
 
+#include "io/file/file_bytes_internal.h"
+#include "io/file/hdf5_use_internal.h"
+
 #include <stdio.h>
 
 /* ---- what a file is about: campaign_head.c, campaign_compare.c ---- */
@@ -58,9 +61,6 @@ imk_status imki_seal_verify(int file, uint64_t size, imki_seal *seal, imk_error 
 
 /* ---- what libhdf5 writes and reads: campaign_hdf5*.c ---- */
 
-/* Call a function that uses libhdf5: one at a time, and without messages on standard error.
- * @return false: memory is short, and it was not called */
-bool imki_hdf5_use(void (*use)(void *context), void *context);
 /* All of a results file in front of its values, which follow at once: from malloc(). The first
  * IMKI_SEAL_SIZE bytes are the seal's, and zero.
  * @param path  for the error
@@ -126,17 +126,7 @@ imk_status imki_part_add(imki_part *part, uint64_t first, uint64_t runs, const d
 /* Close; remove it too when it is not needed any more. */
 void imki_part_close(imki_part *part, bool remove_it);
 
-/* ---- files: campaign_file.c ---- */
-
-/* read() until `size` bytes are there. @return 0, an errno value, or -1 at the end of the file */
-int imki_read_at(int file, uint64_t offset, void *bytes, size_t size);
-uint32_t imki_crc(uint32_t crc, const void *bytes, size_t size);
-/* CRC-32 of a part of the file, going on from *crc. @return as imki_read_at(), or ENOMEM */
-int imki_crc_at(int file, uint64_t offset, uint64_t size, uint32_t *crc);
-/* Little-endian numbers of 1 … 8 bytes. */
-void imki_put_number(unsigned char *at, uint64_t number, size_t size);
-uint64_t imki_get_number(const unsigned char *at, size_t size);
-/* The system's reason for a failed imki_read_at(). */
+/* The system's reason for a failed imki_read_at(): campaign_seal.c. */
 imk_status imki_read_error(int number, const char *field, imk_error *error);
 
 #endif

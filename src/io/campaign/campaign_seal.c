@@ -7,7 +7,9 @@
  * digits. Nothing of a file is believed, and nothing but this line read, before size and CRC agree:
  * what a broken disk or transfer leaves never reaches libhdf5. */
 #include "campaign_internal.h"
+#include "io/file/system_error_internal.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -96,4 +98,13 @@ imk_status imki_seal_verify(int file, uint64_t size, imki_seal *seal, imk_error 
     if (crc != seal->crc)
         return damaged(error, "the file is damaged: its checksum does not agree with its content");
     return IMK_OK;
+}
+
+imk_status imki_read_error(int number, const char *field, imk_error *error)
+{
+    if (number == ENOMEM)
+        return imk_error_set(error, IMK_ERROR_MEMORY, field, "", "");
+    if (number > 0)
+        return imki_system_error(error, IMK_ERROR_READ, field, number);
+    return imk_error_set(error, IMK_ERROR_READ, field, "the file is cut short", "compute it again");
 }

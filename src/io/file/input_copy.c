@@ -2,12 +2,12 @@
 /* Copies of inputs that cannot be read twice, in files without a name: they are gone with the
  * process, however it ends. An input is known by its device and inode, which do not depend on the
  * name it is opened by. */
-#define _GNU_SOURCE /* mkostemp(), memrchr() */
+#define _GNU_SOURCE /* memrchr() */
 #include "input_copy_internal.h"
 
 #include "imukit/log.h"
 #include "io/log/log_text_internal.h"
-#include "leftovers_internal.h"
+#include "nameless_file_internal.h"
 #include "system_error_internal.h"
 #include "text_file_internal.h"
 
@@ -34,30 +34,6 @@ typedef struct copy {
 
 static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 static copy *copies;
-
-/* A new file without a name. @return -1 with errno */
-static int open_nameless(void)
-{
-    static const char pattern[] = "/imukit-XXXXXX";
-    const char *folder = getenv("TMPDIR");
-    folder = folder && *folder ? folder : "/tmp";
-    const size_t size = strlen(folder) + sizeof pattern;
-    char *name = malloc(size);
-    if (!name)
-        return -1;
-    snprintf(name, size, "%s%s", folder, pattern);
-    /* As long as it has a name, no signal may end the process. */
-    sigset_t before;
-    imki_signals_hold(&before);
-    const int file = mkostemp(name, O_CLOEXEC);
-    const int number = errno;
-    if (file >= 0)
-        unlink(name);
-    imki_signals_release(&before);
-    free(name);
-    errno = number;
-    return file;
-}
 
 static imk_status refuse(const char *path, int number, imk_error *error)
 {
@@ -122,10 +98,10 @@ static imk_status look_at_begin(seen *s, const char *block, size_t size, const c
     s->text = imki_is_text(block, size < LOOK ? size : LOOK);
     if (s->text)
         return IMK_OK;
-    char logs[96], found[200];
-    snprintf(found, sizeof found, "the file is neither text%s, and not compressed by gzip or zstd",
-             imk_log_formats_text(" nor ", false, sizeof logs, logs));
-    return imk_error_set(error, IMK_ERROR_FORMAT, path, found, "");
+    return imk_error_set(error, IMK_ERROR_FORMAT, path,
+                         "the file is neither text nor a log of a known format, nor packed by "
+                         "gzip or zstd",
+                         "");
 }
 
 static imk_status look_at_line(seen *s, const char *block, size_t size, const char *path,
@@ -167,7 +143,7 @@ imk_status imki_copy_make(const struct stat *about, int file, const char *path, 
     copy *made = malloc(sizeof *made);
     if (!made)
         return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
-    *made = (copy){.device = about->st_dev, .inode = about->st_ino, .file = open_nameless()};
+    *made = (copy){.device = about->st_dev, .inode = about->st_ino, .file = imki_open_nameless()};
     const imk_status status = made->file < 0 ? refuse(path, errno, &made->failure)
                                              : copy_all(file, made->file, path, &made->failure);
     if (status != IMK_OK) {

@@ -12,7 +12,10 @@
  * that of texts, of standard output and of names with any other ending. */
 #define IMKI_LOG_FORMATS(ROW)                                                                      \
     ROW(csv, "csv", "CSV", ".csv .txt", NULL, NULL, true)                                          \
-    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)
+    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)                                 \
+    ROW(npz, "npz", ".npz", ".npz", NULL, NULL, true)                                              \
+    ROW(mat, "mat", ".mat", ".mat", NULL, NULL, true)                                              \
+    ROW(hdf5, "hdf5", "HDF5", ".h5 .hdf5", "\x89HDF\r\n\x1a\n", NULL, true)
 
 /* What a format sees of a log that is written. */
 typedef struct imki_log_output {

@@ -88,10 +88,12 @@ static imk_status set_format(imki_row_format *format, size_t column_count,
 
 static imk_status open_files(imk_log_writer *writer, const char *path, imk_error *error)
 {
-    if (!writer->codec->format)
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path,
-                             "imukit cannot write logs of this format", "write a .csv");
-    const imk_status status = imk_output_file_open(path, &writer->log.file, error);
+    const imk_log_format *format;
+    imk_status status = imk_log_format_written(path, &format, error);
+    if (status != IMK_OK)
+        return status;
+    writer->codec = imki_log_codec_of(format);
+    status = imk_output_file_open(path, &writer->log.file, error);
     if (status != IMK_OK || !writer->codec->create)
         return status;
     return writer->codec->create(&writer->log, path, error);
@@ -109,7 +111,6 @@ imk_status imk_log_create(const char *path, size_t column_count, const imk_log_c
     if (status == IMK_OK) {
         memcpy(made->log.column, columns, column_count * sizeof *columns);
         made->log.announced = row_count;
-        made->codec = imki_log_codec_of(imk_log_format_of(path));
         status = open_files(made, path, error);
     }
     if (status != IMK_OK) {

@@ -112,12 +112,37 @@ static bool take_shape(cursor *c, uint64_t shape[2], size_t *dimensions)
 }
 
 typedef struct dictionary {
-    char descr[16];
-    bool fortran_order;
-    uint64_t shape[2];
-    size_t dimensions;
+    imki_npy_array array;
     bool has_descr, has_order, has_shape;
 } dictionary;
+
+/* The type: a text, or the list of the fields of records, which is passed over. */
+static bool take_type(cursor *c, char *type, size_t size)
+{
+    if (take_string(c, type, size))
+        return true;
+    const char *begin = c->at;
+    size_t depth = 0;
+    do {
+        char text[256];
+        if (c->at == c->end)
+            return false;
+        if (*c->at == '\'' || *c->at == '"') {
+            if (!take_string(c, text, sizeof text))
+                return false;
+            continue;
+        }
+        if (*c->at == '[' || *c->at == '(')
+            depth++;
+        else if ((*c->at == ']' || *c->at == ')') && depth > 0)
+            depth--;
+        else if (depth == 0)
+            return false;
+        c->at++;
+    } while (depth > 0);
+    type[0] = '\0';
+    return c->at > begin;
+}
 
 static bool take_entry(cursor *c, dictionary *d)
 {
@@ -125,13 +150,13 @@ static bool take_entry(cursor *c, dictionary *d)
     if (!take_string(c, key, sizeof key) || !take(c, ':'))
         return false;
     if (strcmp(key, "descr") == 0)
-        return d->has_descr = take_string(c, d->descr, sizeof d->descr);
+        return d->has_descr = take_type(c, d->array.type, sizeof d->array.type);
     if (strcmp(key, "fortran_order") == 0) {
-        d->fortran_order = take_word(c, "True");
-        return d->has_order = d->fortran_order || take_word(c, "False");
+        d->array.fortran_order = take_word(c, "True");
+        return d->has_order = d->array.fortran_order || take_word(c, "False");
     }
     if (strcmp(key, "shape") == 0)
-        return d->has_shape = take_shape(c, d->shape, &d->dimensions);
+        return d->has_shape = take_shape(c, d->array.shape, &d->array.dimensions);
     return false;
 }
 
@@ -148,42 +173,55 @@ static bool take_dictionary(cursor *c, dictionary *d)
     return d->has_descr && d->has_order && d->has_shape;
 }
 
-imk_status imki_npy_header_read(const char *header, size_t size, imki_npy *npy, imk_error *error)
+imk_status imki_npy_array_read(const char *header, size_t size, imki_npy_array *array,
+                               imk_error *error)
 {
     const size_t header_size = size >= IMKI_NPY_PREFIX ? imki_npy_header_size(header) : 0;
     if (header_size == 0 || header_size > size)
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "the header of the .npy file is damaged",
                              "a file that numpy.save() wrote");
     cursor c = {header + (header[6] == 1 ? 10 : 12), header + header_size};
-    dictionary d = {0};
+    dictionary d = {.array.header_size = header_size};
     if (!take_dictionary(&c, &d))
         return imk_error_set(error, IMK_ERROR_FORMAT, "",
                              "the dictionary of the .npy file is damaged",
                              "a file that numpy.save() wrote");
-    const bool float64 = strcmp(d.descr, "<f8") == 0, float32 = strcmp(d.descr, "<f4") == 0;
-    if (!float64 && !float32) {
-        char found[64];
-        snprintf(found, sizeof found, "the array type '%s' is not supported", d.descr);
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", found,
-                             "save the array as float64: array.astype('<f8')");
-    }
-    if (d.fortran_order)
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "the array is in Fortran order",
-                             "save numpy.ascontiguousarray(array)");
-    if (d.dimensions != 1 && d.dimensions != 2) {
-        char found[64];
-        snprintf(found, sizeof found, "the array has %zu dimensions", d.dimensions);
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", found,
-                             "a matrix of samples by columns");
-    }
-    npy->rows = d.shape[0];
-    npy->columns = d.dimensions == 2 ? d.shape[1] : 1;
-    npy->value_size = float64 ? 8 : 4;
-    npy->header_size = header_size;
+    *array = d.array;
     return IMK_OK;
 }
 
-void imki_npy_header_write(uint64_t rows, uint64_t columns, char header[IMKI_NPY_HEADER_SIZE])
+imk_status imki_npy_header_read(const char *header, size_t size, imki_npy *npy, imk_error *error)
+{
+    imki_npy_array array;
+    const imk_status status = imki_npy_array_read(header, size, &array, error);
+    if (status != IMK_OK)
+        return status;
+    const bool float64 = strcmp(array.type, "<f8") == 0, float32 = strcmp(array.type, "<f4") == 0;
+    if (!float64 && !float32) {
+        char found[64];
+        snprintf(found, sizeof found, "the array type '%s' is not supported",
+                 array.type[0] ? array.type : "record");
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", found,
+                             "save the array as float64: array.astype('<f8')");
+    }
+    if (array.fortran_order)
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "the array is in Fortran order",
+                             "save numpy.ascontiguousarray(array)");
+    if (array.dimensions != 1 && array.dimensions != 2) {
+        char found[64];
+        snprintf(found, sizeof found, "the array has %zu dimensions", array.dimensions);
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", found,
+                             "a matrix of samples by columns");
+    }
+    npy->rows = array.shape[0];
+    npy->columns = array.dimensions == 2 ? array.shape[1] : 1;
+    npy->value_size = float64 ? 8 : 4;
+    npy->header_size = array.header_size;
+    return IMK_OK;
+}
+
+/* @param text  the dictionary, at most 112 characters */
+static void write_header(const char *text, char header[IMKI_NPY_HEADER_SIZE])
 {
     memset(header, ' ', IMKI_NPY_HEADER_SIZE);
     memcpy(header, magic, sizeof magic);
@@ -191,12 +229,24 @@ void imki_npy_header_write(uint64_t rows, uint64_t columns, char header[IMKI_NPY
     header[7] = 0;
     header[8] = IMKI_NPY_HEADER_SIZE - 10;
     header[9] = 0;
+    memcpy(header + 10, text, strlen(text));
+    header[IMKI_NPY_HEADER_SIZE - 1] = '\n';
+}
+
+void imki_npy_header_write(uint64_t rows, uint64_t columns, char header[IMKI_NPY_HEADER_SIZE])
+{
     /* Two numbers of 20 digits make at most 95 characters, so every shape fits and can be patched
      * in place. */
     char text[112];
-    const int length = snprintf(text, sizeof text,
-                                "{'descr': '<f8', 'fortran_order': False, 'shape': (%llu, %llu), }",
-                                (unsigned long long)rows, (unsigned long long)columns);
-    memcpy(header + 10, text, (size_t)length);
-    header[IMKI_NPY_HEADER_SIZE - 1] = '\n';
+    snprintf(text, sizeof text, "{'descr': '<f8', 'fortran_order': False, 'shape': (%llu, %llu), }",
+             (unsigned long long)rows, (unsigned long long)columns);
+    write_header(text, header);
+}
+
+void imki_npy_list_header_write(const char *type, uint64_t count, char header[IMKI_NPY_HEADER_SIZE])
+{
+    char text[112];
+    snprintf(text, sizeof text, "{'descr': '%.12s', 'fortran_order': False, 'shape': (%llu,), }",
+             type, (unsigned long long)count);
+    write_header(text, header);
 }

@@ -515,6 +515,8 @@ static void npy_heads(void **state)
     check_npy_head("{'descr': '<f8', 'fortran_order': False, 'shape': (3, x), }", IMK_ERROR_FORMAT,
                    damaged);
     check_npy_head("{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (3,), }",
+                   IMK_ERROR_UNSUPPORTED, "the array type 'record' is not supported");
+    check_npy_head("{'descr': [('a', '<f8'), 'fortran_order': False, 'shape': (3,), }",
                    IMK_ERROR_FORMAT, damaged);
     check_npy_head("{'descr': '<f8', 'fortran_order': False, 'shape': (18446744073709551616,), }",
                    IMK_ERROR_FORMAT, damaged);
@@ -533,10 +535,11 @@ static void npy_heads(void **state)
 static void reader_and_writer_agree(void **state)
 {
     (void)state;
-    static const char *const names[] = {"a.csv", "a.csv.gz", "a.csv.zst", "a.npy"};
+    static const char *const names[] = {"a.csv", "a.csv.gz", "a.csv.zst", "a.npy",
+                                        "a.npz", "a.mat",    "a.h5"};
     make_log();
     log_data[2][777] = -1.5; /* the reader takes lines of this length in its fast way */
-    for (int way = 0; way < 4; way++) {
+    for (size_t way = 0; way < sizeof names / sizeof names[0]; way++) {
         const imk_log_settings settings = imk_log_default();
         imk_error error;
         imk_log log;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Reading at a place, whole or not at all, CRC-32 of long runs of bytes, numbers in bytes. */
 #define _POSIX_C_SOURCE 200809L
-#include "campaign_internal.h"
-#include "io/file/system_error_internal.h"
+#include "file_bytes_internal.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -59,13 +58,4 @@ uint64_t imki_get_number(const unsigned char *at, size_t size)
     for (size_t i = size; i-- > 0;)
         number = number << 8 | at[i];
     return number;
-}
-
-imk_status imki_read_error(int number, const char *field, imk_error *error)
-{
-    if (number == ENOMEM)
-        return imk_error_set(error, IMK_ERROR_MEMORY, field, "", "");
-    if (number > 0)
-        return imki_system_error(error, IMK_ERROR_READ, field, number);
-    return imk_error_set(error, IMK_ERROR_READ, field, "the file is cut short", "compute it again");
 }

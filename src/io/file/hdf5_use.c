@@ -2,7 +2,7 @@
 /* libhdf5 as this library uses it: its serial form is not made for threads, and it prints every
  * error on standard error unless told not to. What the caller told it is restored. It does not
  * survive that memory fails within it, so it is entered only while there is more than it takes. */
-#include "campaign_internal.h"
+#include "hdf5_use_internal.h"
 
 #include <hdf5.h>
 #include <pthread.h>
