@@ -12,7 +12,8 @@
  * that of texts, of standard output and of names with any other ending. */
 #define IMKI_LOG_FORMATS(ROW)                                                                      \
     ROW(csv, "csv", "CSV", ".csv .txt", NULL, NULL, true)                                          \
-    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)
+    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)                                 \
+    ROW(ulog, "ulog", "PX4 ULog", ".ulg", "ULog", NULL, false)
 
 /* What a format sees of a log that is written. */
 typedef struct imki_log_output {
