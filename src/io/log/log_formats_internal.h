@@ -13,7 +13,8 @@
 #define IMKI_LOG_FORMATS(ROW)                                                                      \
     ROW(csv, "csv", "CSV", ".csv .txt", NULL, NULL, true)                                          \
     ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)                                 \
-    ROW(ulog, "ulog", "PX4 ULog", ".ulg", "ULog", NULL, false)
+    ROW(ulog, "ulog", "PX4 ULog", ".ulg", "ULog", NULL, false)                                     \
+    ROW(dataflash, "dataflash", "ArduPilot .bin", ".bin .BIN", "\xA3\x95", NULL, false)
 
 /* What a format sees of a log that is written. */
 typedef struct imki_log_output {

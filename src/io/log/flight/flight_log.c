@@ -196,6 +196,8 @@ imk_status imki_flight_open(imk_log_reader *reader, imk_error *error)
     imki_flight_log *log = reader->state;
     const char *names[IMKI_FLIGHT_CELLS + 1] = {"time [us]"};
     imk_status status = survey(reader, error);
+    if (status == IMK_OK && log->settle)
+        log->settle(reader);
     if (status == IMK_OK)
         status = choose(reader, error);
     if (status != IMK_OK)

@@ -83,6 +83,7 @@ typedef struct imki_flight_log {
      * consumed, those that begin before the byte `until`. */
     imk_status (*next)(imk_log_reader *reader, imki_flight_message *message, imk_error *error);
     void (*forget)(imk_log_reader *reader); /* what earlier messages said of later ones; or NULL */
+    void (*settle)(imk_log_reader *reader); /* after the look at the beginning; or NULL */
     const char *nothing;                    /* as in imki_log_stream_choose() */
     imki_flight_stream *streams;
     size_t stream_count, stream_room;
