@@ -107,7 +107,8 @@ static bool is_clause(const char *text)
 {
     static const char *const verbs[] = {" is ",     " are ",  " was ",    " has ",   " have ",
                                         " does ",   " do ",   " cannot ", " failed", " follow",
-                                        " exclude", " must ", " needs ",  " stands", " contains"};
+                                        " exclude", " must ", " needs ",  " stands", " contains",
+                                        " holds "};
     for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++)
         if (strstr(text, verbs[i]))
             return true;
@@ -116,7 +117,8 @@ static bool is_clause(const char *text)
 
 static void add_found(message *s, const imk_error *error, const wording *w)
 {
-    if (w->quoted && error->found[0] != '"') {
+    const bool is_sentence = error->status == IMK_ERROR_NAME_UNKNOWN && is_clause(error->found);
+    if (w->quoted && error->found[0] != '"' && !is_sentence) {
         add(s, "\"");
         add(s, error->found);
         add(s, "\" ");
