@@ -9,17 +9,22 @@ enum { HEADER = IMKI_DATAFLASH_HEADER };
 
 static const char mark[2] = "\xA3\x95";
 
+static int message_number(const char *message)
+{
+    return (unsigned char)message[2];
+}
+
+static size_t length_at(const imki_dataflash *flash, const char *at)
+{
+    return flash->format[message_number(at)].length;
+}
+
 /* Do these bytes, as far as they are there, begin a message of a known number? */
 static bool begins(const imki_dataflash *flash, const char *at, size_t left)
 {
     if (left < HEADER)
         return left == 0 || memcmp(at, mark, left < 2 ? left : 2) == 0;
-    return memcmp(at, mark, 2) == 0 && flash->format[(unsigned char)at[2]].length > 0;
-}
-
-static int message_number(const char *message)
-{
-    return (unsigned char)message[2];
+    return memcmp(at, mark, 2) == 0 && length_at(flash, at) > 0;
 }
 
 /* Have a message at text->next. @param size  of it; 0: it is no whole one, or none follows */
@@ -33,7 +38,7 @@ static imk_status fetch(const imki_dataflash *flash, imki_log_text *text, size_t
     if (status != IMK_OK || (size_t)(text->end - text->next) < HEADER ||
         !begins(flash, text->next, HEADER))
         return status;
-    const size_t length = flash->format[message_number(text->next)].length;
+    const size_t length = length_at(flash, text->next);
     if ((size_t)(text->end - text->next) < length + HEADER)
         status = imki_log_text_need(text, length + HEADER, error);
     const size_t left = (size_t)(text->end - text->next);
@@ -199,14 +204,16 @@ imk_status imki_dataflash_next(imk_log_reader *reader, imki_flight_message *mess
             if (message->size > 0)
                 return IMK_OK;
             text->next += size;
-        } else if (begins(flash, text->next, left) &&
-                   (left < HEADER || left < flash->format[message_number(text->next)].length)) {
-            reader->cut_short = true;
-            text->next = text->end;
         } else {
-            imki_log_damage(reader, flash->log.rows);
+            /* Damaged, or cut off by the end, when nothing follows. */
+            const bool cut = begins(flash, text->next, left < HEADER ? left : HEADER) &&
+                             (left < HEADER || left < length_at(flash, text->next));
             text->next++;
             status = find_way(flash, text, error);
+            if (cut && text->next == text->end)
+                reader->cut_short = true;
+            else
+                imki_log_damage(reader, flash->log.rows);
         }
     }
     return status;

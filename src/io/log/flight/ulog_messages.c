@@ -82,15 +82,25 @@ static size_t at_hand(const imki_ulog *ulog, const imki_log_text *text, bool *la
     return left;
 }
 
-/* Trust in what stands `from` bytes behind text->next, within `left` bytes; what is cut off by the
- * end is as good as what precedes it. */
+/* Trust in a message of which `left` bytes of the body are there, because the end cuts it off. */
+static trust trust_cut(const imki_ulog *ulog, char kind, const char *body, size_t size, size_t left)
+{
+    if (kind == 'D')
+        return left < 2 || trust_data(ulog, body, size) == FITS ? UNKNOWN : WRONG;
+    if (kind == 'S' || kind == 'R' || kind == 'O')
+        return size == (kind == 'S' ? SYNC : 2) ? UNKNOWN : WRONG;
+    return strchr("ABCFILMPQ", kind) && kind != '\0' && size <= LARGEST_UNKNOWN ? UNKNOWN : WRONG;
+}
+
+/* Trust in what stands `from` bytes behind text->next, within `left` bytes. */
 static trust trust_at(const imki_ulog *ulog, const imki_log_text *text, size_t from, size_t left)
 {
     if (left < from + HEADER)
         return FITS;
-    const char *at = text->next + from;
-    const size_t size = number16(at);
-    return left < from + HEADER + size ? UNKNOWN : trust_of(ulog, at[2], at + HEADER, size);
+    const char *at = text->next + from, *body = at + HEADER;
+    const size_t size = number16(at), there = left - from - HEADER;
+    return there < size ? trust_cut(ulog, at[2], body, size, there)
+                        : trust_of(ulog, at[2], body, size);
 }
 
 /* Whole message at text->next? If need be, by the next one.
@@ -199,18 +209,19 @@ static imk_status learn(imk_log_reader *reader, size_t size, imk_error *error)
     return memory ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
 }
 
-/* The rest before the end, or before appended data, is no whole message. */
-static void end_of_part(imk_log_reader *reader)
+/* What stands here reaches beyond the end, or into appended data. Either it was cut off, and
+ * nothing follows, or its size is damaged. */
+static imk_status end_of_part(imk_log_reader *reader, imk_error *error)
 {
     imki_ulog *ulog = reader->state;
     imki_log_text *text = &reader->text;
-    bool last;
-    const size_t rest = at_hand(ulog, text, &last);
-    if (text->next + rest == text->end)
-        reader->cut_short = rest > 0;
-    else if (rest > 0)
+    text->next++;
+    const imk_status status = find_way(ulog, text, error);
+    if (text->next == text->end)
+        reader->cut_short = true;
+    else
         imki_log_damage(reader, ulog->log.rows);
-    text->next += rest;
+    return status;
 }
 
 /* A message that is at hand: *message is set if it is of a sensor. Else it is consumed, or what
@@ -262,7 +273,7 @@ imk_status imki_ulog_next(imk_log_reader *reader, imki_flight_message *message, 
         if (size > 0)
             status = take(reader, size, message, error);
         else
-            end_of_part(reader);
+            status = end_of_part(reader, error);
     }
     return status;
 }
