@@ -71,8 +71,10 @@ static size_t stream_of(imki_dataflash *flash, int sensor, int number, size_t in
     *memory = true;
     if (flash->planned[sensor] > 0 && flash->planned[sensor] != number + 1)
         return SIZE_MAX; /* another format of the same name */
-    if (*index > 0 || !flash->log.surveying)
+    if (*index > 0)
         return (size_t)*index - 1;
+    if (!flash->log.surveying)
+        return SIZE_MAX;
     flash->planned[sensor] = number + 1;
     imki_dataflash_plan(flash, format, sensor, &flash->plan[sensor]);
     const size_t added =

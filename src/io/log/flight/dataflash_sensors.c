@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The messages of ArduPilot that hold inertial sensors. Their fields, and the units that hold where
- * the log does not say them, are those of its source [ARDUPILOT-LOG]. The frame of all is forward,
+ * the log does not say them, are those of its source [DATAFLASH]. The frame of all is forward,
  * right, down. */
 #include "dataflash_internal.h"
 

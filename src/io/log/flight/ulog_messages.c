@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { HEADER = 3, LARGEST_UNKNOWN = 10000, SYNC = 8 };
+enum { HEADER = 3, LARGEST_UNKNOWN = 10000, NAME_MOST = 256, SYNC = 8 };
 
 typedef enum trust { WRONG, UNKNOWN, FITS } trust;
 
@@ -52,7 +52,7 @@ static trust trust_of(const imki_ulog *ulog, char kind, const char *body, size_t
     case 'B':
         return size >= 40 ? FITS : WRONG;
     case 'F':
-        return size > 2 && memchr(body, ':', size) ? FITS : WRONG;
+        return size > 2 && memchr(body, ':', size < NAME_MOST ? size : NAME_MOST) ? FITS : WRONG;
     case 'R':
     case 'O':
         return size == 2 ? FITS : WRONG;

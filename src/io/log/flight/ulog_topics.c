@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The topics of PX4 that hold inertial sensors, and what their fields are; PX4 defines them with
- * their units, in the folder `msg` of its source [PX4]. The frame of all is forward, right, down.
+ * their units, in the folder `msg` of its source [ULOG]. The frame of all is forward, right, down.
  *
  * A field that a version of PX4 does not have yet, or no more, is looked for in vain; the types and
  * the places are those of the file. */
