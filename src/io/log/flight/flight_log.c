@@ -80,9 +80,11 @@ static imk_status walk(imk_log_reader *reader, uint64_t until, bool *whole, imk_
     *whole = false;
     log->until = until;
     for (;;) {
-        const imk_status status = log->next(reader, &m, error);
+        const imk_status status = log->next(reader, &m, NULL);
+        if (status == IMK_ERROR_MEMORY)
+            return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
         if (status != IMK_OK)
-            return status == IMK_ERROR_MEMORY ? status : IMK_OK;
+            return IMK_OK;
         if (m.size == 0)
             break;
         count(log, &m);
