@@ -122,10 +122,10 @@ static imk_status look_at_begin(seen *s, const char *block, size_t size, const c
     s->text = imki_is_text(block, size < LOOK ? size : LOOK);
     if (s->text)
         return IMK_OK;
-    char logs[96], found[200];
-    snprintf(found, sizeof found, "the file is neither text%s, and not compressed by gzip or zstd",
-             imk_log_formats_text(" nor ", false, sizeof logs, logs));
-    return imk_error_set(error, IMK_ERROR_FORMAT, path, found, "");
+    return imk_error_set(error, IMK_ERROR_FORMAT, path,
+                         "the file is neither text nor a log of a known format, nor packed by "
+                         "gzip or zstd",
+                         "");
 }
 
 static imk_status look_at_line(seen *s, const char *block, size_t size, const char *path,
