@@ -18,7 +18,8 @@ enum {
     IMKI_DATAFLASH_FMT_LENGTH = 89,
     IMKI_DATAFLASH_FIELDS = 16,
     IMKI_DATAFLASH_SENSORS = 20,
-    IMKI_DATAFLASH_PIECE = 32 /* samples in an ISBD */
+    IMKI_DATAFLASH_INSTANCES = 16, /* ArduPilot has up to 5, twice that in batches */
+    IMKI_DATAFLASH_PIECE = 32      /* samples in an ISBD */
 };
 
 typedef struct imki_dataflash_format {
@@ -43,8 +44,9 @@ typedef struct imki_dataflash {
     char unit[256][16];     /* by letter; "": not said */
     double multiplier[256]; /* by letter; 0: not said */
     imki_flight_plan plan[IMKI_DATAFLASH_SENSORS];
-    int planned[IMKI_DATAFLASH_SENSORS];     /* number of the format, + 1 */
-    int stream[IMKI_DATAFLASH_SENSORS][256]; /* by instance: index + 1; 0: none */
+    int planned[IMKI_DATAFLASH_SENSORS]; /* number of the format, + 1 */
+    int stream[IMKI_DATAFLASH_SENSORS]
+              [IMKI_DATAFLASH_INSTANCES]; /* by instance: index + 1; 0: none */
     imki_dataflash_batch batch;
 } imki_dataflash;
 

@@ -105,9 +105,11 @@ static bool begin_batch(imki_dataflash *flash, const imki_dataflash_format *form
     while (data < 256 && strcmp(flash->format[data].name, "ISBD") != 0)
         data++;
     const uint64_t type = imki_flight_whole(&field[1], message);
+    const uint64_t instance = imki_flight_whole(&field[2], message);
     const double multiplier = imki_flight_number(&field[3], message, 0);
     const double rate = imki_flight_number(&field[6], message, 0);
-    if (data == 256 || type > 1 || !(multiplier > 0) || !(rate > 0))
+    if (data == 256 || type > 1 || instance >= IMKI_DATAFLASH_INSTANCES || !(multiplier > 0) ||
+        !(rate > 0))
         return false;
     *batch = (imki_dataflash_batch){.known = true,
                                     .number = imki_flight_whole(&field[0], message),
@@ -115,8 +117,8 @@ static bool begin_batch(imki_dataflash *flash, const imki_dataflash_format *form
                                     .stamp = imki_flight_whole(&field[5], message),
                                     .rate = rate,
                                     .divisor = multiplier};
-    batch->stream = stream_of(flash, imki_dataflash_batches(type == 1), data,
-                              imki_flight_whole(&field[2], message) & 0xFF, true, memory);
+    batch->stream =
+        stream_of(flash, imki_dataflash_batches(type == 1), data, instance, true, memory);
     return true;
 }
 
@@ -167,6 +169,8 @@ static bool take(imki_dataflash *flash, const char *message, size_t size, imki_f
     if (format->sensor >= 0) {
         const bool counted = format->instance.type == IMKI_FLIGHT_UINT8;
         const size_t instance = counted ? imki_flight_whole(&format->instance, message) : 0;
+        if (instance >= IMKI_DATAFLASH_INSTANCES)
+            return false;
         const size_t stream = stream_of(flash, format->sensor, number, instance, counted, memory);
         if (stream != SIZE_MAX)
             *made = imki_flight_message_of(&flash->plan[format->sensor], stream, message, size);

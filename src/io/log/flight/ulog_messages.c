@@ -25,11 +25,20 @@ static trust trust_data(const imki_ulog *ulog, const char *body, size_t size)
     return size <= LARGEST_UNKNOWN ? UNKNOWN : WRONG;
 }
 
-/* Is the key of `before` and more bytes, its length first, within the body? */
+/* Is it text, from the beginning up to the first `end`, which is there? */
+static bool is_text(const char *begin, size_t size, char end)
+{
+    size_t i = 0;
+    while (i < size && begin[i] != end && begin[i] > ' ' && begin[i] <= '~')
+        i++;
+    return i > 0 && i < size && begin[i] == end;
+}
+
+/* A key, "type name", with its length before it, behind `before` bytes. */
 static trust trust_key(const char *body, size_t size, size_t before)
 {
     const size_t length = size > before ? (unsigned char)body[before] : 0;
-    return length > 0 && length + before + 1 <= size ? FITS : WRONG;
+    return length + before + 1 <= size && is_text(body + before + 1, length, ' ') ? FITS : WRONG;
 }
 
 /* Does a message of this kind and size, whose body is at hand, fit? */
@@ -48,19 +57,13 @@ static trust trust_of(const imki_ulog *ulog, char kind, const char *body, size_t
     case 'Q':
         return trust_key(body, size, 1);
     case 'A':
-        return size > 3 ? FITS : WRONG;
-    case 'B':
-        return size >= 40 ? FITS : WRONG;
+        return size > 3 && size < NAME_MOST && body[3] > ' ' && body[3] <= '~' ? FITS : WRONG;
     case 'F':
-        return size > 2 && memchr(body, ':', size < NAME_MOST ? size : NAME_MOST) ? FITS : WRONG;
+        return is_text(body, size < NAME_MOST ? size : NAME_MOST, ':') ? FITS : WRONG;
     case 'R':
     case 'O':
         return size == 2 ? FITS : WRONG;
-    case 'L':
-        return size >= 9 ? FITS : WRONG;
-    case 'C':
-        return size >= 11 ? FITS : WRONG;
-    default: /* of a later version */
+    default: /* L, C, B, which any bytes may be, or of a later version */
         return ((kind >= 'A' && kind <= 'Z') || (kind >= 'a' && kind <= 'z')) && size > 0 &&
                        size <= LARGEST_UNKNOWN
                    ? UNKNOWN
