@@ -123,7 +123,7 @@ IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settin
  *  read.
  *  @param stream  receives up to `most`, those that can be read first
  *  @param count   receives their number, which may be above `most`; 0: the log has none of its own
- *  @param format  receives the format of the log
+ *  @param format  receives the format of the log; may be NULL
  *  @return errors of imk_log_open(), but for a log in which there is nothing that can be read */
 IMK_API imk_status imk_log_streams(const char *path, const imk_log_settings *settings, size_t most,
                                    imk_log_stream *stream, size_t *count,

@@ -105,9 +105,9 @@ static const wording *wording_of(imk_status status)
 /* Does a reason have its own verb, so that it stands alone? */
 static bool is_clause(const char *text)
 {
-    static const char *const verbs[] = {" is ",     " are ",  " was ",    " has ",   " have ",
-                                        " does ",   " do ",   " cannot ", " failed", " follow",
-                                        " exclude", " must ", " needs ",  " stands", " contains"};
+    static const char *const verbs[] = {
+        " is ",    " are ",   " was ",    " has ",  " have ",  " does ",  " do ",      " cannot ",
+        " failed", " follow", " exclude", " must ", " needs ", " stands", " contains", " holds "};
     for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++)
         if (strstr(text, verbs[i]))
             return true;

@@ -15,7 +15,9 @@
     ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)                                 \
     ROW(npz, "npz", ".npz", ".npz", NULL, NULL, true)                                              \
     ROW(mat, "mat", ".mat", ".mat", NULL, NULL, true)                                              \
-    ROW(hdf5, "hdf5", "HDF5", ".h5 .hdf5", "\x89HDF\r\n\x1a\n", NULL, true)
+    ROW(hdf5, "hdf5", "HDF5", ".h5 .hdf5", "\x89HDF\r\n\x1a\n", NULL, true)                        \
+    ROW(ulog, "ulog", "PX4 ULog", ".ulg", "ULog", NULL, false)                                     \
+    ROW(dataflash, "dataflash", "ArduPilot .bin", ".bin .BIN", "\xA3\x95", NULL, false)
 
 /* What a format sees of a log that is written. */
 typedef struct imki_log_output {

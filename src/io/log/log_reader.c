@@ -193,7 +193,8 @@ imk_status imk_log_streams(const char *path, const imk_log_settings *settings, s
         status = IMK_OK;
     if (status == IMK_OK) {
         *count = imk_log_stream_list(made, most, stream);
-        *format = made->format;
+        if (format)
+            *format = made->format;
     }
     imk_log_close(made);
     return status;

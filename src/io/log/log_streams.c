@@ -40,22 +40,21 @@ static bool is_asked(const imk_log_reader *reader, const imk_log_stream *stream,
            (s->instance == 0 || stream->instance == s->instance - 1);
 }
 
-/* How a stream is asked for: "--topic imu --instance 1". */
+/* How a stream is asked for, besides what the settings say rightly: "--topic imu --instance 1". */
 static void describe(const imk_log_reader *reader, const imk_log_stream *stream, size_t size,
                      char *text)
 {
-    size_t same = 0, others = 0;
-    for (size_t i = 0; i < reader->stream_count; i++) {
-        const imk_log_stream *other = &reader->streams[i];
-        const bool alike = other->readable && strcmp(other->name, stream->name) == 0;
-        same += alike;
-        others += other->readable && !alike;
-    }
-    const bool named = others > 0 && stream->name[0] != '\0';
+    const imk_log_settings *s = &reader->settings;
+    size_t same = 0;
+    for (size_t i = 0; i < reader->stream_count; i++)
+        same += reader->streams[i].readable && strcmp(reader->streams[i].name, stream->name) == 0;
+    const bool named = s->topic && strcmp(s->topic, stream->name) == 0;
+    const bool told = stream->instance < 0 || s->instance == stream->instance + 1 ||
+                      (same <= 1 && s->instance == 0);
     int used = 0;
-    if (named || same <= 1 || stream->instance < 0)
+    if (!named || told)
         used = snprintf(text, size, "--topic %.96s", stream->name);
-    if (same > 1 && stream->instance >= 0 && used >= 0 && (size_t)used < size)
+    if (!told && used >= 0 && (size_t)used < size)
         snprintf(text + used, size - (size_t)used, "%s--instance %d", used > 0 ? " " : "",
                  stream->instance);
 }
@@ -85,7 +84,10 @@ static imk_status refuse(const imk_log_reader *reader, size_t matches, imk_error
     if (listed > 1)
         snprintf(expected + used, sizeof expected - used, listed < shown ? ", ...)" : ")");
     if (matches > 0 && !s->topic && s->instance == 0)
-        snprintf(found, sizeof found, "the log has %zu sensors", readable);
+        snprintf(found, sizeof found, "the log holds %zu sensors", readable);
+    else if (s->topic && matches == 0 && s->instance > 0)
+        snprintf(found, sizeof found, "none of the %zu sensors is \"%.40s\" of instance %d",
+                 readable, s->topic, s->instance - 1);
     else if (s->topic)
         snprintf(found, sizeof found, "%s of the %zu sensor%s of the log %s called \"%.40s\"",
                  matches > 0 ? "several" : "none", readable, readable == 1 ? "" : "s",

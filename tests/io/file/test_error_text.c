@@ -249,6 +249,9 @@ static void remedies(void **state)
                "\"bias_instabilty\" is not a known key; did you mean bias_instability?");
     error = error_of(IMK_ERROR_NAME_UNKNOWN, "", "navigaton", "navigation");
     check_text(&error, NULL, "\"navigaton\" is not a known name; did you mean navigation?");
+    /* A sentence about names is not quoted as a name. */
+    error = error_of(IMK_ERROR_NAME_UNKNOWN, "", "the log holds 2 sensors", "add --topic a (or b)");
+    check_text(&error, NULL, "the log holds 2 sensors; add --topic a (or b)");
     error = error_of(IMK_ERROR_RANGE, "", "x", "positive"); /* no name: no question */
     check_text(&error, NULL, "\"x\" is outside its valid range; positive");
 }

@@ -495,7 +495,7 @@ static void sensors_of_a_table_are_chosen(void **state)
     imk_log_stream stream[4];
     size_t count;
     read_text(text, NULL);
-    check_says(IMK_ERROR_NAME_UNKNOWN, "the log has 2 sensors; add --topic a (or --topic b)");
+    check_says(IMK_ERROR_NAME_UNKNOWN, "the log holds 2 sensors; add --topic a (or --topic b)");
     settings.topic = "b";
     read_text(text, &settings);
     CHECK_CLOSE(t.data[1][0], 3, 0);

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Logs of ArduPilot. flight.bin and old.bin were written by make_flight_logs.py, after the
+ * published format and without imukit; their values are formulas, which are computed here again, so
+ * that all numbers agree to the last bit. */
+#define _DEFAULT_SOURCE
+#include "flight_table.h"
+
+#include "imukit/io.h"
+
+static bytes log_bytes;
+static table t;
+
+static double whole(int k, int axis)
+{
+    return (double)((7 * k + 31 * axis) % 201 - 100);
+}
+
+static double value(int k, int axis)
+{
+    return whole(k, axis) / 1024;
+}
+
+static double seconds(double us)
+{
+    return us * 1e-6;
+}
+
+static void read_sensor(const char *topic, int instance, size_t block)
+{
+    const imk_log_settings settings = sensor(topic, instance);
+    read_bytes(log_bytes.at, log_bytes.size, &settings, block, &t);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.findings.damaged, 0);
+    assert_int_equal(t.findings.not_finite, 0);
+    assert_false(t.findings.cut_short);
+}
+
+static void all_sensors_are_listed(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *kind;
+        int instance;
+        uint64_t rows;
+        double begin, end; /* [us], by the formulas of make_flight_logs.py */
+    } due[] = {{"IMU", "IMU", 0, 31, 6990000, 7072500},
+               {"IMU", "IMU", 1, 30, 7000000, 7072500},
+               {"GYR", "GYR", 2, 30, 7000000, 7014500},
+               {"ACC", "ACC", 0, 30, 7000000, 7014500},
+               {"ISBD/gyro", "ISBD", 1, 128, 8100000, 8300000 + 63e6 / 1600.5},
+               {"ISBD/accel", "ISBD", 1, 192, 8000000, 8400000 + 63e6 / 1600.5},
+               {"MAG", "MAG", 0, 5, 7000000, 7000000}};
+    char path[] = SOURCE_DIRECTORY "/tests/io/log/flight/flight.bin";
+    imk_log_stream stream[16];
+    size_t count;
+    imk_error error;
+    CHECK_OK(imk_log_streams(path, NULL, 16, stream, &count, NULL, &error));
+    assert_int_equal(count, 7);
+    for (size_t i = 0; i < count; i++) {
+        assert_string_equal(stream[i].name, due[i].name);
+        assert_string_equal(stream[i].kind, due[i].kind);
+        assert_int_equal(stream[i].instance, due[i].instance);
+        assert_true(stream[i].readable == (i < 6));
+        assert_false(stream[i].estimated);
+        assert_int_equal(stream[i].samples, due[i].rows);
+        CHECK_RELATIVE(stream[i].begin, seconds(due[i].begin), 1e-15);
+        CHECK_RELATIVE(stream[i].end, seconds(due[i].end), 1e-15);
+    }
+}
+
+static void rows_of_both_kinds(void **state)
+{
+    (void)state;
+    for (int instance = 0; instance < 2; instance++) {
+        const int early = instance == 0; /* one row before the units are said */
+        read_sensor("IMU", instance, 7);
+        assert_int_equal(t.rows, 30 + early);
+        assert_int_equal(t.columns, 8);
+        for (int row = early; row < 30 + early; row++) {
+            const int k = row - early;
+            assert_true(t.value[0][row] == seconds(7e6 + 2500 * k));
+            for (int axis = 0; axis < 6; axis++)
+                assert_true(t.value[1 + axis][row] == value(k + 50 * instance, axis));
+            assert_true(t.value[7][row] == 20 + k / 8.0 + 273.15);
+        }
+    }
+}
+
+static void units_and_multipliers_of_the_log(void **state)
+{
+    (void)state;
+    const double degree = acos(-1) / 180;
+    read_sensor("ACC", -1, 16); /* hundredths, by its multiplier */
+    for (int k = 0; k < 30; k++) {
+        assert_true(t.value[0][k] == seconds(7e6 + 500 * k));
+        assert_true(t.value[3][k] == whole(k, 2) * 0.01);
+    }
+    read_sensor("GYR", -1, 16);    /* deg/s, by its unit */
+    for (int k = 0; k < 30; k++) { /* message 4 has no SampleUS */
+        assert_true(t.value[0][k] == seconds(7e6 + 500 * k + (k == 4 ? 50 : 0)));
+        assert_true(t.value[1][k] == value(k, 0) * degree);
+    }
+}
+
+static void batches_become_rows(void **state)
+{
+    (void)state;
+    static table other;
+    for (int gyro = 0; gyro < 2; gyro++) {
+        const char *name = gyro ? "ISBD/gyro" : "ISBD/accel";
+        read_sensor(name, -1, 100);
+        size_t row = 0;
+        for (int number = gyro; number < 5; number += 2)
+            for (int i = 0; i < 64; i++, row++) {
+                assert_true(t.value[0][row] == seconds(8e6 + 1e5 * number + i * 1e6 / 1600.5));
+                for (int axis = 0; axis < 3; axis++)
+                    assert_true(t.value[1 + axis][row] == whole(64 * number + i, axis) / 938);
+            }
+        assert_int_equal(t.rows, row);
+        assert_string_equal(t.names[1], gyro ? "gyro_x" : "accel_x");
+        for (size_t block = 1; block < 80; block += 9) { /* pieces end within a message */
+            const imk_log_settings settings = sensor(name, -1);
+            read_bytes(log_bytes.at, log_bytes.size, &settings, block, &other);
+            assert_int_equal(other.rows, t.rows);
+            check_same_rows(&t, 0, &other, 0, t.rows);
+        }
+    }
+}
+
+static void old_logs(void **state)
+{
+    (void)state;
+    const bytes old = fixture("old.bin");
+    const imk_log_settings first = sensor("IMU", -1), second = sensor("IMU2", -1);
+    read_bytes(old.at, old.size, &first, 5, &t);
+    assert_int_equal(t.rows, 12);
+    for (int k = 0; k < 12; k++) {
+        assert_true(t.value[0][k] == seconds((90000 + 20 * k) * 1000.0));
+        assert_true(t.value[6][k] == value(k, 5));
+        assert_true(t.value[7][k] == (2500 + k) * 0.01 + 273.15);
+    }
+    read_bytes(old.at, old.size, &second, 5, &t);
+    assert_int_equal(t.rows, 12);
+    assert_int_equal(t.columns, 7);
+    for (int k = 0; k < 12; k++)
+        assert_true(t.value[1][k] == value(k + 1, 0));
+    free(old.at);
+}
+
+/* Where the first message of a number begins. */
+static size_t place_of(unsigned char number)
+{
+    const char header[3] = {(char)0xA3, (char)0x95, (char)number};
+    size_t at = 0;
+    while (memcmp(log_bytes.at + at, header, 3) != 0)
+        at++;
+    return at;
+}
+
+static void cut_and_damaged_logs(void **state)
+{
+    (void)state;
+    const imk_log_settings imu = sensor("IMU", 1), batch = sensor("ISBD/accel", -1);
+    check_cut(&log_bytes, &imu, 7);
+    check_cut(&log_bytes, &batch, 61);
+    const size_t from = place_of(13); /* PARM; nothing replaces what stands before */
+    assert_true(check_damage(&log_bytes, &imu, from, 9, 0) > 10);
+    assert_true(check_damage(&log_bytes, &imu, from, 60, 0xA3) > 10);
+    assert_true(check_damage(&log_bytes, &batch, from, 30, 0xFF) > 1);
+}
+
+static void bytes_that_are_lost(void **state)
+{
+    (void)state;
+    static table hurt;
+    const imk_log_settings settings = sensor("IMU", 1);
+    read_bytes(log_bytes.at, log_bytes.size, &settings, 64, &t);
+    char *copy = malloc(log_bytes.size);
+    assert_non_null(copy);
+    for (size_t at = place_of(13); at + 40 < log_bytes.size; at += 11) {
+        memcpy(copy, log_bytes.at, at);
+        memcpy(copy + at, log_bytes.at + at + 40, log_bytes.size - at - 40);
+        read_bytes(copy, log_bytes.size - 40, &settings, 64, &hurt);
+        size_t place = 0;
+        for (size_t row = 0; row < hurt.rows; row++) /* no row is made up of two */
+            assert_true(find_row(&hurt, row, &t, &place));
+        assert_true(hurt.rows + 2 >= t.rows);
+        assert_true(hurt.findings.damaged > 0 || hurt.findings.cut_short);
+    }
+    free(copy);
+}
+
+static void any_place_can_be_gone_to(void **state)
+{
+    (void)state;
+    static table part;
+    static const char *const names[] = {"IMU", "ISBD/gyro"};
+    for (int n = 0; n < 2; n++) {
+        const imk_log_settings settings = sensor(names[n], 1);
+        imk_log_reader *reader;
+        imk_error error;
+        read_bytes(log_bytes.at, log_bytes.size, &settings, 64, &t);
+        CHECK_OK(imk_log_open_memory(log_bytes.at, log_bytes.size, &settings, &reader, &error));
+        size_t before = t.rows;
+        for (int i = 0; i <= 50; i++) {
+            CHECK_OK(imk_log_seek(reader, i / 50.0, &error));
+            read_on(reader, 16, &part);
+            assert_true(part.rows <= before && (i > 0 || part.rows == t.rows));
+            check_same_rows(&part, 0, &t, t.rows - part.rows, part.rows);
+            assert_int_equal(part.findings.damaged, 0);
+            before = part.rows;
+        }
+        assert_int_equal(before, 0);
+        imk_log_close(reader);
+    }
+}
+
+static void check_refused(const char *at, size_t size, const imk_log_settings *settings,
+                          imk_status due, const char *words)
+{
+    char text[400];
+    read_bytes(at, size, settings, 64, &t);
+    CHECK_STATUS(t.opened, due);
+    imk_error_text(&t.error, "x.bin", text, sizeof text);
+    if (!strstr(text, words))
+        fail_msg("\"%s\" lacks \"%s\"", text, words);
+}
+
+static void what_cannot_be_read_is_refused(void **state)
+{
+    (void)state;
+    static const char text[] = "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n";
+    check_refused(text, sizeof text - 1, NULL, IMK_ERROR_FORMAT, "give the .bin file");
+    check_refused("\xA3\x95", 2, NULL, IMK_ERROR_EMPTY, "no messages of gyros");
+    imk_log_settings settings = sensor("IMU", 1);
+    settings.columns = "time,gyro_x";
+    check_refused(log_bytes.at, log_bytes.size, &settings, IMK_ERROR_CONFLICT, "leave --columns");
+    settings = sensor("IMU", 7);
+    check_refused(log_bytes.at, log_bytes.size, &settings, IMK_ERROR_NAME_UNKNOWN,
+                  "none of the 6 sensors is \"IMU\" of instance 7; add --instance 0 (or --instance "
+                  "1, --topic GYR --instance 2, ...)");
+    settings = imk_log_default();
+    settings.format = "dataflash";
+    check_refused("time [s],gyro_x [rad/s]\n", 24, &settings, IMK_ERROR_FORMAT, "ArduPilot");
+}
+
+static int load(void **state)
+{
+    (void)state;
+    log_bytes = fixture("flight.bin");
+    return 0;
+}
+
+static int unload(void **state)
+{
+    (void)state;
+    free(log_bytes.at);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all_sensors_are_listed),
+        cmocka_unit_test(rows_of_both_kinds),
+        cmocka_unit_test(units_and_multipliers_of_the_log),
+        cmocka_unit_test(batches_become_rows),
+        cmocka_unit_test(old_logs),
+        cmocka_unit_test(cut_and_damaged_logs),
+        cmocka_unit_test(bytes_that_are_lost),
+        cmocka_unit_test(any_place_can_be_gone_to),
+        cmocka_unit_test(what_cannot_be_read_is_refused),
+    };
+    return cmocka_run_group_tests(tests, load, unload);
+}
