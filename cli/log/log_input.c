@@ -22,6 +22,9 @@ const option log_input_options[LOG_INPUT_OPTIONS] = {
     {"columns", OPTION_TEXT, AT(file.columns), .value = "NAMES",
      .help = "names of the columns of a log without header, such as time,gyro_x,gyro_y,gyro_z; - "
              "skips a column"},
+    {"binary", OPTION_TEXT, AT(file.binary), .value = "LAYOUT",
+     .help = "layout of the records of a binary file, such as 'u32 time us, 3 x i16 gyro 16.4 "
+             "LSB/(deg/s), 3 x i16 accel 2048 LSB/g'"},
     {"gyro-unit", OPTION_TEXT, AT(file.gyro_unit), .value = "UNIT",
      .help = "unit of the gyro columns where the header has none, such as deg/s"},
     {"accel-unit", OPTION_TEXT, AT(file.accel_unit), .value = "UNIT",

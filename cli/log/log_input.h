@@ -18,7 +18,7 @@ typedef struct log_input {
 } log_input;
 
 /* How to read a file, and last what analysis does about gaps, which conversion leaves out. */
-enum { LOG_INPUT_OPTIONS = 13, LOG_FORMAT_OPTIONS = LOG_INPUT_OPTIONS - 1 };
+enum { LOG_INPUT_OPTIONS = 14, LOG_FORMAT_OPTIONS = LOG_INPUT_OPTIONS - 1 };
 extern const option log_input_options[LOG_INPUT_OPTIONS];
 #define LOG_INPUT_GROUP(offset)                                                                    \
     {                                                                                              \

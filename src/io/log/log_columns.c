@@ -147,6 +147,9 @@ const char *imk_log_unit_ignored(const imk_log_reader *reader, const imk_log_set
                                  imk_quantity quantity, const imk_log_column **column)
 {
     const char *text = unit_setting(quantity, settings);
+    imk_unit unit; /* a text that is no unit means something to the format that took it */
+    if (text && imk_unit_parse(text, text + strlen(text), &unit, NULL) != IMK_OK)
+        text = NULL;
     for (size_t i = 0; text && i < reader->layout.column_count; i++) {
         *column = &reader->layout.column[i];
         if ((*column)->quantity == quantity && !is_unit(&(*column)->unit, text))

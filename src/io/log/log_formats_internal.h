@@ -12,7 +12,12 @@
  * that of texts, of standard output and of names with any other ending. */
 #define IMKI_LOG_FORMATS(ROW)                                                                      \
     ROW(csv, "csv", "CSV", ".csv .txt", NULL, NULL, true)                                          \
-    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)
+    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)                                 \
+    ROW(novatel, "novatel", "NovAtel log", "", NULL, NULL, false)                                  \
+    ROW(sbg, "sbg", "sbgECom log", "", NULL, NULL, false)                                          \
+    ROW(ubx, "ubx", "UBX log", ".ubx", NULL, NULL, false)                                          \
+    ROW(vectornav, "vectornav", "VectorNav log", "", NULL, NULL, false)                            \
+    ROW(described, "binary", "binary records (--binary)", "", NULL, NULL, false)
 
 /* What a format sees of a log that is written. */
 typedef struct imki_log_output {

@@ -49,7 +49,13 @@ static imk_status refuse_format(const char *name, imk_error *error)
 static imk_status find_format(imk_log_reader *reader, const imki_input *input, imk_error *error)
 {
     const imki_log_text *text = &reader->text;
+    const bool described = reader->settings.binary != NULL;
     const char *name = reader->settings.format;
+    if (described && name && strcmp(name, "binary") != 0)
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "binary",
+                             "--binary is the format of the file, and --format states another",
+                             "leave one of the two out");
+    name = described ? "binary" : name;
     reader->format =
         name    ? imk_log_format_named(name)
         : input ? imki_log_recognise(reader->path, text->next, (size_t)(text->end - text->next))
