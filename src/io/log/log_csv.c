@@ -4,6 +4,7 @@
 #include "io/file/text_file_internal.h"
 #include "log_cells_internal.h"
 #include "log_reader_internal.h"
+#include "maker/foreign_kinds_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,6 +23,9 @@ typedef struct csv {
 /* Texts of other systems, which other programs convert. @param size  above 0 */
 static imk_status check_encoding(const char *begin, size_t size, imk_error *error)
 {
+    const imk_status foreign = imki_foreign_kind_refuse(begin, size, error);
+    if (foreign != IMK_OK)
+        return foreign;
     if (size >= 2 && (memcmp(begin, "\xFF\xFE", 2) == 0 || memcmp(begin, "\xFE\xFF", 2) == 0))
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "the text is UTF-16",
                              "convert it: iconv -f UTF-16 -t UTF-8 FILE >NEW.csv");
