@@ -210,8 +210,7 @@ static imk_status read_described(imk_log_reader *reader, size_t max_rows, double
 static imk_status seek_described(imk_log_reader *reader, double fraction, imk_error *error)
 {
     described *d = reader->state;
-    uint64_t done, size;
-    imk_log_progress(reader, &done, &size);
+    const uint64_t size = imki_log_text_size(&reader->text);
     const uint64_t records = size > d->begin ? (size - d->begin) / d->form.size : 0;
     const uint64_t record = (uint64_t)(fraction * (double)records);
     const uint64_t to = record < records ? record : records;

@@ -274,8 +274,7 @@ imk_status imki_messages_read(imk_log_reader *reader, size_t max_rows, double *c
 imk_status imki_messages_seek(imk_log_reader *reader, double fraction, imk_error *error)
 {
     imki_messages *m = reader->state;
-    uint64_t done, size;
-    imk_log_progress(reader, &done, &size);
+    const uint64_t size = imki_log_text_size(&reader->text);
     const imk_status status =
         imki_log_text_seek(&reader->text, (uint64_t)(fraction * (double)size), error);
     m->place = 0;
