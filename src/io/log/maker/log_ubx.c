@@ -155,7 +155,7 @@ static imk_status set_tick(imki_messages *m, const char *unit, size_t size, char
     if (!imki_count_scale_read(unit, unit + strlen(unit), &scale, sizeof wrong, wrong) ||
         scale.divisor != 1.0 || scale.offset != 0.0 || scale.factor <= 0.0)
         return imk_error_set(error, IMK_ERROR_UNIT_UNKNOWN, "--time-unit", unit,
-                             "what one tag lasts, such as \"39.0625 us\" or ms");
+                             "such as \"39.0625 us\" or ms, which is what one tag lasts");
     m->tick = scale.factor;
     snprintf(name, size, "time [%s]", scale.unit);
     return IMK_OK;

@@ -45,7 +45,7 @@ static void note_loss(imk_log_reader *reader, imki_messages *m, size_t rows)
 {
     if (!m->lost && !m->searching)
         imki_log_damage(reader, rows);
-    m->lost = true;
+    m->lost |= !m->searching;
 }
 
 /* The next message, which stays at the place. *found is false at the end. */
@@ -70,7 +70,7 @@ static imk_status next_message(imk_log_reader *reader, size_t rows, imki_message
             if (m->part)
                 note_loss(reader, m, rows);
             m->part = m->lost = m->searching = false;
-            *found = true;
+            *found = m->begun = true;
             return IMK_OK;
         case IMKI_FOUND_DAMAGED:
             if (!m->part)
@@ -83,7 +83,7 @@ static imk_status next_message(imk_log_reader *reader, size_t rows, imki_message
             m->part |= left == 1 && *text->next != '\0' && strchr(m->maker->starts, *text->next);
             break;
         }
-        if (!step_on(m, text) && what == IMKI_FOUND_NOTHING && !m->part)
+        if (!step_on(m, text) && what == IMKI_FOUND_NOTHING && m->begun && !m->part)
             note_loss(reader, m, rows);
     }
 }
@@ -124,8 +124,7 @@ static void go_back(imk_log_reader *reader)
     imki_log_text *text = &reader->text;
     text->next = text->hold;
     m->place = 0;
-    m->searching = true; /* recording may have begun within a message */
-    m->lost = m->part = m->counter.begun = false;
+    m->begun = m->searching = m->lost = m->part = m->counter.begun = false;
     reader->damaged = reader->first_damaged = 0;
     reader->cut_short = false;
 }
@@ -235,7 +234,7 @@ imk_status imki_messages_open(imk_log_reader *reader, const imki_maker *maker, i
     reader->state = m;
     if (!m)
         return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
-    *m = (imki_messages){.maker = maker, .tick = 1.0, .timed = true, .searching = true};
+    *m = (imki_messages){.maker = maker, .tick = 1.0, .timed = true};
     reader->text.hold = reader->text.next;
     imk_status status = choose_kind(reader, error);
     if (status == IMK_OK)

@@ -61,7 +61,8 @@ struct imki_messages {
     size_t place;                  /* in the body of the message at the place of the text */
     bool lost;                     /* what came last was no message */
     bool part;                     /* since the last message, one began that was not whole */
-    bool searching;                /* until the first message, what is lost is not damage */
+    bool begun;     /* a message was met; what stands before is one that began before recording */
+    bool searching; /* behind a jump: until the next message, nothing is damage */
     /* The clock: cell `time_cell` is (stamp - origin) * tick, in the unit of the column. */
     bool timed;
     double tick;
