@@ -245,11 +245,23 @@ static void test_without_end(void **state)
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         snprintf(line, sizeof line, "( ulimit -f 2048; %s )", lines[i]);
         assert_int_equal(run(line), 1);
-        check_contains(err,
-                       "error: /dev/zero: the file is neither text nor .npy, and not compressed by "
-                       "gzip or zstd\n",
-                       line);
+        check_contains(
+            err,
+            "error: /dev/zero: the file is neither text nor a log of a known format, and "
+            "not compressed by gzip or zstd\n",
+            line);
     }
+    /* Logs that only a closer look tells, or an option. */
+    static const char fixtures[] = SOURCE_DIRECTORY "/tests/io/log/maker/fixtures";
+    snprintf(line, sizeof line, "cat %s/novatel.bin | $I identify - -o m.yaml", fixtures);
+    assert_int_equal(run(line), 1);
+    check_contains(err, "24 rows are too few", line);
+    snprintf(line, sizeof line,
+             "cat %s/described.bin | $I identify - -o m.yaml --binary 'u32 time us, skip 12, i16 "
+             "gyro_x count'",
+             fixtures);
+    assert_int_equal(run(line), 1);
+    check_contains(err, "24 rows are too few", line);
     /* What ends, and can be read after a conversion, is told that. */
     assert_int_equal(run("iconv -f UTF-8 -t UTF-16 log.csv | $I identify /dev/stdin"), 1);
     check_contains(err, "the text is UTF-16; convert it: iconv -f UTF-16", "UTF-16");

@@ -128,6 +128,14 @@ static bool is_folder(const char *path)
            S_ISDIR(about.st_mode);
 }
 
+/* Is it read, if it begins so? What the settings state the format of may begin anyhow. */
+static bool is_known(const void *context, const char *begin, size_t size)
+{
+    const imk_log_settings *settings = context;
+    return settings->format || settings->binary ||
+           imki_log_recognise(NULL, begin, size < LOOK ? size : LOOK) != imk_log_format_get(0);
+}
+
 /* As imk_log_open(), but the reader may be made also on error. NULL: it is not. */
 static imk_status open_path(const char *path, const imk_log_settings *settings,
                             imk_log_reader **reader, imk_error *error)
@@ -138,7 +146,7 @@ static imk_status open_path(const char *path, const imk_log_settings *settings,
     *reader = NULL;
     imk_status status = check_settings(settings, error);
     if (status == IMK_OK && !is_folder(path))
-        status = settings->reopened ? imki_input_open_kept(path, &input, error)
+        status = settings->reopened ? imki_input_open_known(path, is_known, settings, &input, error)
                                     : imki_input_open(path, &input, error);
     if (status == IMK_OK)
         status = make_reader(input, path, settings, reader, error);

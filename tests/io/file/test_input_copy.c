@@ -170,8 +170,9 @@ static void check_refused(const char *path, const char *found)
 static void without_end(void **state)
 {
     (void)state;
-    check_refused("/dev/zero",
-                  "the file is neither text nor .npy, and not compressed by gzip or zstd");
+    check_refused(
+        "/dev/zero",
+        "the file is neither text nor a log of a known format, and not compressed by gzip or zstd");
     int ends[2];
     char path[40];
     assert_int_equal(pipe(ends), 0);
