@@ -25,6 +25,9 @@ const option log_input_options[LOG_INPUT_OPTIONS] = {
     {"map", OPTION_TEXT, AT(file.map), .value = "NAMES",
      .help = "columns by the names that the log has for them, such as gyro_x=wx,time=stamp; other "
              "columns are not read"},
+    {"binary", OPTION_TEXT, AT(file.binary), .value = "LAYOUT",
+     .help = "layout of the records of a binary file, such as 'u32 time us, 3 x i16 gyro 16.4 "
+             "LSB/(deg/s), 3 x i16 accel 2048 LSB/g'"},
     {"gyro-unit", OPTION_TEXT, AT(file.gyro_unit), .value = "UNIT",
      .help = "unit of the gyro columns where the file has none, such as deg/s"},
     {"accel-unit", OPTION_TEXT, AT(file.accel_unit), .value = "UNIT",

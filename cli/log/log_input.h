@@ -18,7 +18,7 @@ typedef struct log_input {
 } log_input;
 
 /* How to read a file, and last what analysis does about gaps, which conversion leaves out. */
-enum { LOG_INPUT_OPTIONS = 19, LOG_FORMAT_OPTIONS = LOG_INPUT_OPTIONS - 1 };
+enum { LOG_INPUT_OPTIONS = 20, LOG_FORMAT_OPTIONS = LOG_INPUT_OPTIONS - 1 };
 /* Without those of a sensor's ranges, for a verb that has them of its own. */
 enum { LOG_RANGELESS_OPTIONS = LOG_FORMAT_OPTIONS - 2 };
 extern const option log_input_options[LOG_INPUT_OPTIONS];

@@ -67,6 +67,9 @@ typedef struct imk_log_settings {
     const char *gyro_unit, *accel_unit, *time_unit, *temperature_unit;
     /** Name of the format (imk_log_format.name) for files that do not tell it; NULL: by content. */
     const char *format;
+    /** Layout of the records of a binary file: "u32 time us, 3 x i16 gyro 16.4 LSB/(deg/s), 3 x i16
+     *  accel 2048 LSB/g" (docs/logs.md); NULL: the file is none. */
+    const char *binary;
     /** Which of the sensors in a log that holds several (imk_log_stream): its name, or an ending of
      * it that only one has; NULL: the only one. */
     const char *topic;

@@ -77,6 +77,8 @@ static ssize_t read_block(int file, char *block)
 
 /* What an input that may have no end is known by, so that it does not fill the disk. */
 typedef struct seen {
+    imki_known_bytes *known;
+    const void *context;
     bool text;
     size_t line; /* bytes since the last line feed */
 } seen;
@@ -93,7 +95,7 @@ static imk_status look_at_begin(seen *s, const char *block, size_t size, const c
     /* A skippable frame of zstd. */
     if (size >= 4 && (block[0] & 0xF0) == 0x50 && memcmp(block + 1, "\x2A\x4D\x18", 3) == 0)
         return IMK_OK;
-    if (imk_log_format_begun(block, size))
+    if (imk_log_format_begun(block, size) || (s->known && s->known(s->context, block, size)))
         return IMK_OK;
     s->text = imki_is_text(block, size < LOOK ? size : LOOK);
     if (s->text)
@@ -115,10 +117,9 @@ static imk_status look_at_line(seen *s, const char *block, size_t size, const ch
                                "a text file with shorter lines");
 }
 
-static imk_status copy_all(int from, int to, const char *path, imk_error *error)
+static imk_status copy_all(int from, int to, const char *path, seen s, imk_error *error)
 {
     char block[BLOCK];
-    seen s = {false, 0};
     for (bool first = true;; first = false) {
         const ssize_t count = read_block(from, block);
         if (count < 0)
@@ -138,14 +139,17 @@ static imk_status copy_all(int from, int to, const char *path, imk_error *error)
     }
 }
 
-imk_status imki_copy_make(const struct stat *about, int file, const char *path, imk_error *error)
+imk_status imki_copy_make(const struct stat *about, int file, const char *path,
+                          imki_known_bytes *known, const void *context, imk_error *error)
 {
     copy *made = malloc(sizeof *made);
     if (!made)
         return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
     *made = (copy){.device = about->st_dev, .inode = about->st_ino, .file = imki_open_nameless()};
-    const imk_status status = made->file < 0 ? refuse(path, errno, &made->failure)
-                                             : copy_all(file, made->file, path, &made->failure);
+    const imk_status status =
+        made->file < 0
+            ? refuse(path, errno, &made->failure)
+            : copy_all(file, made->file, path, (seen){known, context, false, 0}, &made->failure);
     if (status != IMK_OK) {
         if (made->file >= 0)
             close(made->file);

@@ -5,13 +5,17 @@
 #define IMUKIT_INPUT_COPY_INTERNAL_H
 
 #include "imukit/status.h"
+#include "input_stream_internal.h"
 
 #include <stdbool.h>
 #include <sys/stat.h>
 
 /* Copy all that the stream `file` still gives to a temporary file in TMPDIR, and keep that for the
- * input `about`. @return IMK_ERROR_READ, _WRITE, _MEMORY, with `path` in error.field */
-imk_status imki_copy_make(const struct stat *about, int file, const char *path, imk_error *error);
+ * input `about`.
+ * @param known  as of imki_input_open_known(); may be NULL
+ * @return IMK_ERROR_READ, _WRITE, _MEMORY, with `path` in error.field */
+imk_status imki_copy_make(const struct stat *about, int file, const char *path,
+                          imki_known_bytes *known, const void *context, imk_error *error);
 
 /* The copy of an input: a descriptor that the caller closes and reads by pread(), -1 when there is
  * none.

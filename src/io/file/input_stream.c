@@ -32,6 +32,8 @@ enum { RAW_SIZE = 1 << 16, FRAME_HEAD = 18 /* the longest of zstd */ };
 typedef enum encoding { ENCODING_MEMORY, ENCODING_PLAIN, ENCODING_GZIP, ENCODING_ZSTD } encoding;
 
 struct imki_input {
+    imki_known_bytes *known; /* while it is opened; NULL: no others */
+    const void *context;
     encoding encoding;
     const char *bytes; /* memory */
     size_t size;
@@ -344,7 +346,8 @@ static imk_status open_copy(imki_input *input, const char *path, const struct st
         const int from = open_stream(input, path);
         if (from < 0)
             return imki_system_error(&input->failure, IMK_ERROR_OPEN, input->path, errno);
-        status = imki_copy_make(about, from, input->path, &input->failure);
+        status =
+            imki_copy_make(about, from, input->path, input->known, input->context, &input->failure);
         if (!input->standard)
             close(from);
         if (status == IMK_OK)
@@ -381,7 +384,8 @@ static imk_status open_file(imki_input *input, const char *path, bool kept)
                : status;
 }
 
-static imk_status open_input(const char *path, bool kept, imki_input **input, imk_error *error)
+static imk_status open_input(const char *path, bool kept, imki_known_bytes *known,
+                             const void *context, imki_input **input, imk_error *error)
 {
     imki_input *made = calloc(1, sizeof *made);
     unsigned char *raw = malloc(RAW_SIZE);
@@ -394,6 +398,8 @@ static imk_status open_input(const char *path, bool kept, imki_input **input, im
     made->file = -1;
     made->rewind = -1;
     made->raw = raw;
+    made->known = known;
+    made->context = context;
     imk_status status = open_file(made, path, kept);
     if (status == IMK_OK)
         status = recognise(made);
@@ -409,12 +415,18 @@ static imk_status open_input(const char *path, bool kept, imki_input **input, im
 
 imk_status imki_input_open(const char *path, imki_input **input, imk_error *error)
 {
-    return open_input(path, false, input, error);
+    return open_input(path, false, NULL, NULL, input, error);
 }
 
 imk_status imki_input_open_kept(const char *path, imki_input **input, imk_error *error)
 {
-    return open_input(path, true, input, error);
+    return open_input(path, true, NULL, NULL, input, error);
+}
+
+imk_status imki_input_open_known(const char *path, imki_known_bytes *known, const void *context,
+                                 imki_input **input, imk_error *error)
+{
+    return open_input(path, true, known, context, input, error);
 }
 
 imk_status imki_input_open_memory(const char *bytes, size_t size, imki_input **input)

@@ -10,6 +10,8 @@
 
 #include "imukit/status.h"
 
+#include <stdbool.h>
+
 typedef struct imki_input imki_input;
 
 /* Open a file; "-" is standard input. A .gz or .zst content is recognised by its first bytes, not
@@ -25,6 +27,13 @@ imk_status imki_input_open(const char *path, imki_input **input, imk_error *erro
  *
  * @return IMK_ERROR_WRITE besides, when the copy cannot be written */
 imk_status imki_input_open_kept(const char *path, imki_input **input, imk_error *error);
+
+/* Are these the first bytes of an input that is read? */
+typedef bool imki_known_bytes(const void *context, const char *begin, size_t size);
+/* As imki_input_open_kept(), which copies texts, what is compressed and logs that their first bytes
+ * tell; and what is `known` besides. */
+imk_status imki_input_open_known(const char *path, imki_known_bytes *known, const void *context,
+                                 imki_input **input, imk_error *error);
 
 /* The same from memory, which must outlive the input; never decompressed. Empty is no error. */
 imk_status imki_input_open_memory(const char *bytes, size_t size, imki_input **input);

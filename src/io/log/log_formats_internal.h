@@ -17,7 +17,12 @@
     ROW(mat, "mat", ".mat", ".mat", NULL, NULL, true)                                              \
     ROW(hdf5, "hdf5", "HDF5", ".h5 .hdf5", "\x89HDF\r\n\x1a\n", NULL, true)                        \
     ROW(ulog, "ulog", "PX4 ULog", ".ulg", "ULog", NULL, false)                                     \
-    ROW(dataflash, "dataflash", "ArduPilot .bin", ".bin .BIN", "\xA3\x95", NULL, false)
+    ROW(dataflash, "dataflash", "ArduPilot .bin", ".bin .BIN", "\xA3\x95", NULL, false)            \
+    ROW(novatel, "novatel", "NovAtel log", "", NULL, NULL, false)                                  \
+    ROW(sbg, "sbg", "sbgECom log", "", NULL, NULL, false)                                          \
+    ROW(ubx, "ubx", "UBX log", ".ubx", NULL, NULL, false)                                          \
+    ROW(vectornav, "vectornav", "VectorNav log", "", NULL, NULL, false)                            \
+    ROW(described, "binary", "binary records (--binary)", "", NULL, NULL, false)
 
 /* What a format sees of a log that is written. */
 typedef struct imki_log_output {

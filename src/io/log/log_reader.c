@@ -62,7 +62,13 @@ static imk_status refuse_format(const char *name, imk_error *error)
 static imk_status find_format(imk_log_reader *reader, const imki_input *input, imk_error *error)
 {
     const imki_log_text *text = &reader->text;
+    const bool described = reader->settings.binary != NULL;
     const char *name = reader->settings.format;
+    if (described && name && strcmp(name, "binary") != 0)
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "binary",
+                             "--binary is the format of the file, and --format states another",
+                             "leave one of the two out");
+    name = described ? "binary" : name;
     const bool of_text = name && imki_log_dialect_named(name);
     reader->format =
         of_text ? imk_log_format_get(0)
@@ -142,6 +148,14 @@ static bool is_folder(const char *path)
            S_ISDIR(about.st_mode);
 }
 
+/* Is it read, if it begins so? What the settings state the format of may begin anyhow. */
+static bool is_known(const void *context, const char *begin, size_t size)
+{
+    const imk_log_settings *settings = context;
+    return settings->format || settings->binary ||
+           imki_log_recognise(NULL, begin, size < LOOK ? size : LOOK) != imk_log_format_get(0);
+}
+
 /* As imk_log_open(), but the reader may be made also on error. NULL: it is not. */
 static imk_status open_path(const char *path, const imk_log_settings *settings,
                             imk_log_reader **reader, imk_error *error)
@@ -152,7 +166,7 @@ static imk_status open_path(const char *path, const imk_log_settings *settings,
     *reader = NULL;
     imk_status status = check_settings(settings, error);
     if (status == IMK_OK && !is_folder(path))
-        status = settings->reopened ? imki_input_open_kept(path, &input, error)
+        status = settings->reopened ? imki_input_open_known(path, is_known, settings, &input, error)
                                     : imki_input_open(path, &input, error);
     if (status == IMK_OK)
         status = make_reader(input, path, settings, reader, error);

@@ -126,6 +126,15 @@ uint64_t imki_log_text_place(const imki_log_text *text)
     return text->taken + (uint64_t)(text->next - text->base);
 }
 
+uint64_t imki_log_text_size(const imki_log_text *text)
+{
+    uint64_t done, size;
+    if (!text->buffer)
+        return (uint64_t)(text->end - text->base);
+    imki_input_progress(text->input, &done, &size);
+    return size;
+}
+
 imk_status imki_log_text_seek(imki_log_text *text, uint64_t place, imk_error *error)
 {
     if (text->decoder.encoding != IMKI_LOG_PLAIN)

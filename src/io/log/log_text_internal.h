@@ -65,6 +65,9 @@ imk_status imki_log_text_need(imki_log_text *text, size_t size, imk_error *error
 /* Byte of the (decompressed) input at which `next` is. */
 uint64_t imki_log_text_place(const imki_log_text *text);
 
+/* Bytes of a plain file or of memory; 0 when it is not known. */
+uint64_t imki_log_text_size(const imki_log_text *text);
+
 /* Go to a byte of a plain file or of memory; lines count from 1 again. Pointers into the window are
  * void. @return as imki_input_seek(); IMK_ERROR_UNSUPPORTED for a text that is decoded */
 imk_status imki_log_text_seek(imki_log_text *text, uint64_t place, imk_error *error);

@@ -250,6 +250,17 @@ static void test_without_end(void **state)
                        "format, nor packed by gzip or zstd\n",
                        line);
     }
+    /* Logs that only a closer look tells, or an option. */
+    static const char fixtures[] = SOURCE_DIRECTORY "/tests/io/log/maker/fixtures";
+    snprintf(line, sizeof line, "cat %s/novatel.bin | $I identify - -o m.yaml", fixtures);
+    assert_int_equal(run(line), 1);
+    check_contains(err, "24 rows are too few", line);
+    snprintf(line, sizeof line,
+             "cat %s/described.bin | $I identify - -o m.yaml --binary 'u32 time us, skip 12, i16 "
+             "gyro_x count'",
+             fixtures);
+    assert_int_equal(run(line), 1);
+    check_contains(err, "24 rows are too few", line);
     /* UTF-16 with zeros, too, is a text. */
     assert_int_equal(run("iconv -f UTF-8 -t UTF-16 log.csv | $I convert /dev/stdin - >a && "
                          "$I convert log.csv - | cmp - a"),

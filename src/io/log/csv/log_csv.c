@@ -2,6 +2,7 @@
 /* Logs as CSV text: is it a text, which columns are what (log_csv_header.c), what the first rows
  * show (log_csv_look.c); rows (log_csv_rows.c). */
 #include "io/file/text_file_internal.h"
+#include "io/log/maker/foreign_kinds_internal.h"
 #include "log_csv_internal.h"
 
 #include <math.h>
@@ -21,6 +22,9 @@ static imk_status check_text(imki_log_text *text, imk_error *error)
     if (at_hand == 0)
         return imk_error_set(error, IMK_ERROR_EMPTY, "", "the log is empty",
                              "a header and rows of numbers");
+    status = imki_foreign_kind_refuse(text->next, at_hand, error);
+    if (status != IMK_OK)
+        return status;
     const imki_log_encoding encoding =
         imki_log_encoding_of(text->next, at_hand < LOOK ? at_hand : LOOK);
     if (encoding != IMKI_LOG_PLAIN) {
