@@ -77,6 +77,8 @@ static const struct message {
                 "first behind row {2} of {1}"},
     {"cut_short", "the file ends in the middle of a row, message or block; what is whole, {0} "
                   "row{0s}, is used; if the file is a copy, copy it again"},
+    {"received", "the stamps of the messages are all 0; the times at which they were recorded are "
+                 "used, which have the jitter of their way"},
     {"unordered", UNORDERED},
     {"stamps:unordered", UNORDERED},
     {"missing",

@@ -12,7 +12,9 @@
  * that of texts, of standard output and of names with any other ending. */
 #define IMKI_LOG_FORMATS(ROW)                                                                      \
     ROW(csv, "csv", "CSV", ".csv .txt", NULL, NULL, true)                                          \
-    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)
+    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)                                  \
+    ROW(bag, "bag", "ROS 1 bag", ".bag", "#ROSBAG V", NULL, false)                                  \
+    ROW(mcap, "mcap", "MCAP", ".mcap", "\x89" "MCAP0\r\n", NULL, false)
 
 /* What a format sees of a log that is written. */
 typedef struct imki_log_output {

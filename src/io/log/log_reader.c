@@ -402,6 +402,7 @@ imk_log_findings imk_log_findings_get(const imk_log_reader *reader)
     found.damaged = reader->damaged;
     found.first_damaged = reader->first_damaged;
     found.cut_short = reader->cut_short;
+    found.received = reader->received;
     if (reader->layout.time_column < 0 && reader->rows > 0)
         found.last_time = (double)(reader->rows - 1) / reader->rate;
     return found;

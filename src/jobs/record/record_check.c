@@ -91,4 +91,6 @@ void imki_tell_damage(const imk_record_source *source, imk_findings *findings)
                   IMKI_NUMBERS((double)f.damaged, (double)f.rows, (double)f.first_damaged));
     if (f.cut_short)
         imki_find(findings, IMK_FINDING_WARNING, "cut_short", NULL, IMKI_NUMBERS((double)f.rows));
+    if (f.received)
+        imki_find(findings, IMK_FINDING_WARNING, "received", NULL, 0, NULL);
 }
