@@ -35,8 +35,7 @@ typedef struct copy {
 static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 static copy *copies;
 
-/* A new file without a name. @return -1 with errno */
-static int open_nameless(void)
+int imki_nameless_file(void)
 {
     static const char pattern[] = "/imukit-XXXXXX";
     const char *folder = getenv("TMPDIR");
@@ -167,7 +166,7 @@ imk_status imki_copy_make(const struct stat *about, int file, const char *path, 
     copy *made = malloc(sizeof *made);
     if (!made)
         return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
-    *made = (copy){.device = about->st_dev, .inode = about->st_ino, .file = open_nameless()};
+    *made = (copy){.device = about->st_dev, .inode = about->st_ino, .file = imki_nameless_file()};
     const imk_status status = made->file < 0 ? refuse(path, errno, &made->failure)
                                              : copy_all(file, made->file, path, &made->failure);
     if (status != IMK_OK) {
@@ -212,4 +211,11 @@ imk_status imki_copy_open(const struct stat *about, bool kept, int *file, imk_er
         status = use(place, kept, file, error);
     pthread_mutex_unlock(&mutex);
     return status;
+}
+
+imk_status imki_nameless_write(int file, const char *bytes, size_t size, const char *path,
+                               imk_error *error)
+{
+    const int number = file < 0 ? errno : write_all(file, bytes, size);
+    return number == 0 ? IMK_OK : refuse(path, number, error);
 }

@@ -14,7 +14,8 @@
     ROW(csv, "csv", "CSV", ".csv .txt", NULL, NULL, true)                                          \
     ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)                                  \
     ROW(bag, "bag", "ROS 1 bag", ".bag", "#ROSBAG V", NULL, false)                                  \
-    ROW(mcap, "mcap", "MCAP", ".mcap", "\x89" "MCAP0\r\n", NULL, false)
+    ROW(mcap, "mcap", "MCAP", ".mcap", "\x89" "MCAP0\r\n", NULL, false)                            \
+    ROW(rosbag2, "rosbag2", "rosbag2", ".db3", "SQLite format 3", NULL, false)
 
 /* What a format sees of a log that is written. */
 typedef struct imki_log_output {

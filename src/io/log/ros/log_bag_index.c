@@ -67,7 +67,7 @@ imk_status imki_bag_index_read(imki_bag *bag, const imki_bag_header *head, imk_e
         status = take_record(bag, IMKI_BAG_CONNECTION, &intact, error);
     for (uint64_t i = 0; i < chunks && intact && status == IMK_OK; i++)
         status = take_record(bag, IMKI_BAG_CHUNK_INFO, &intact, error);
-    log->indexed = intact;
+    log->indexed = log->counted = intact;
     log->reader->cut_short = false;
     log->reader->damaged = log->reader->first_damaged = 0;
     if (!intact) {

@@ -33,6 +33,7 @@ static imk_status open_mcap(imk_log_reader *reader, imk_error *error)
     imk_status status = imki_mcap_start(&s->mcap, error);
     if (status == IMK_OK && imki_ros_can_seek(&s->log)) {
         status = imki_mcap_summary_read(&s->mcap, &s->log.indexed, error);
+        s->log.counted = s->log.indexed;
         if (!s->log.indexed)
             imki_ros_topic_uncount(&s->log);
     }

@@ -63,7 +63,8 @@ struct imki_ros_log {
     imki_ros_channel last; /* looked up, if last_known */
     bool last_known;
     size_t topic;          /* the one that is read */
-    bool indexed;          /* all topics are known, with their numbers of messages */
+    bool indexed;          /* all topics are known */
+    bool counted;          /* and their numbers of messages */
     bool moved;            /* by imk_log_seek(): channels may be unknown */
     /* In the look at the beginning: bytes are kept from where `looked` is, a record before the
      * first message of an Imu, so that a pipe can go back, too. */
@@ -79,6 +80,9 @@ struct imki_ros_log {
 
 /* ---- log_ros_topics.c ------------------------------------------------------------------------ */
 
+/* Note a topic, if it is not there yet. @param topic  receives its number */
+imk_status imki_ros_topic_add(imki_ros_log *log, imki_log_piece name, imki_log_piece type,
+                              imki_ros_encoding encoding, uint32_t *topic, imk_error *error);
 /* Note a channel. One that is there already is replaced.
  * @param name,type  not terminated by a zero
  * @param topic      receives its number

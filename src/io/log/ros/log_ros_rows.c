@@ -76,8 +76,10 @@ static imk_status choose(imki_ros_log *log, imk_error *error)
     for (size_t i = 0; i < log->topic_count && status == IMK_OK; i++) {
         imki_ros_topic *topic = &log->topics[i];
         /* One that nobody published to is not to be asked about. */
-        const uint64_t messages = log->indexed ? topic->stream.samples : topic->seen;
-        topic->stream.readable = topic->encoding != IMKI_ROS_OTHER && messages > 0;
+        const bool used = log->counted    ? topic->stream.samples > 0
+                          : log->indexed ? true
+                                         : topic->seen > 0;
+        topic->stream.readable = topic->encoding != IMKI_ROS_OTHER && used;
         status = imki_log_stream_add(reader, &topic->stream, error);
     }
     if (status == IMK_OK)

@@ -35,14 +35,25 @@ static imk_status refuse_memory(imk_error *error)
     return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
 }
 
-static imk_status topic_add(imki_ros_log *log, imki_log_piece name, imki_log_piece type,
-                            imki_ros_encoding encoding, uint32_t *topic, imk_error *error)
+static imk_status refuse_number(imk_error *error)
+{
+    char found[64];
+    snprintf(found, sizeof found, "the log has more than %d topics or connections",
+             IMKI_ROS_CHANNELS_MAX);
+    return imk_error_set(error, IMK_ERROR_RANGE, "", found,
+                         "a log of fewer topics, as rosbag filter or mcap filter writes");
+}
+
+imk_status imki_ros_topic_add(imki_ros_log *log, imki_log_piece name, imki_log_piece type,
+                              imki_ros_encoding encoding, uint32_t *topic, imk_error *error)
 {
     uint64_t hash = hash_bytes(UINT64_C(0xCBF29CE484222325), name);
     hash = hash_bytes(hash, type) + encoding;
     for (*topic = 0; *topic < log->topic_count; ++*topic)
         if (log->topics[*topic].hash == hash)
             return IMK_OK;
+    if (log->topic_count == IMKI_ROS_CHANNELS_MAX)
+        return refuse_number(error);
     if (log->topic_count == log->topic_room) {
         const size_t room = log->topic_room > 0 ? 2 * log->topic_room : 16;
         imki_ros_topic *larger = realloc(log->topics, room * sizeof *larger);
@@ -77,7 +88,7 @@ imk_status imki_ros_channel_add(imki_ros_log *log, uint32_t id, imki_log_piece n
                                 imki_log_piece type, imki_ros_encoding encoding, uint32_t *topic,
                                 imk_error *error)
 {
-    const imk_status status = topic_add(log, name, type, encoding, topic, error);
+    const imk_status status = imki_ros_topic_add(log, name, type, encoding, topic, error);
     if (status != IMK_OK)
         return status;
     const size_t at = find(log, id);
@@ -86,13 +97,8 @@ imk_status imki_ros_channel_add(imki_ros_log *log, uint32_t id, imki_log_piece n
         log->channels[at].topic = *topic;
         return IMK_OK;
     }
-    if (log->channel_count == IMKI_ROS_CHANNELS_MAX) {
-        char found[64];
-        snprintf(found, sizeof found, "the log has more than %d connections",
-                 IMKI_ROS_CHANNELS_MAX);
-        return imk_error_set(error, IMK_ERROR_RANGE, "", found,
-                             "a log of fewer topics, as rosbag filter or mcap filter writes");
-    }
+    if (log->channel_count == IMKI_ROS_CHANNELS_MAX)
+        return refuse_number(error);
     if (log->channel_count == log->channel_room) {
         const size_t room = log->channel_room > 0 ? 2 * log->channel_room : 16;
         imki_ros_channel *larger = realloc(log->channels, room * sizeof *larger);

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* SQLite databases of strangers, read only. */
+#ifndef IMUKIT_LOG_SQLITE_INTERNAL_H
+#define IMUKIT_LOG_SQLITE_INTERNAL_H
+
+#include "imukit/status.h"
+
+#include <sqlite3.h>
+#include <stdbool.h>
+
+/* The bytes of a database: a file read by pread(), or memory. */
+typedef struct imki_sqlite_bytes {
+    int file; /* -1: memory */
+    const char *memory;
+    uint64_t size;
+    uint64_t claimed; /* size that the head of the database says, or `size` if that is larger */
+} imki_sqlite_bytes;
+
+/* Open a database, which reads `bytes` until it is closed. Only plain tables can be read: what
+ * would run functions, other programs' code or without end is refused by the library. A file that
+ * is shorter than its head says is read as far as it goes; what is missing is damaged.
+ * @param handle  to be closed by sqlite3_close(), also on error; may be NULL
+ * @return IMK_ERROR_FORMAT, IMK_ERROR_MEMORY */
+imk_status imki_sqlite_open(imki_sqlite_bytes *bytes, sqlite3 **handle, imk_error *error);
+
+/* Why the last call failed. @return IMK_ERROR_MEMORY, else IMK_ERROR_FORMAT */
+imk_status imki_sqlite_refuse(sqlite3 *handle, imk_error *error);
+
+/* Is this a table, and no view or the like? */
+bool imki_sqlite_has_table(sqlite3 *handle, const char *name);
+
+#endif
