@@ -9,6 +9,7 @@
  * stand in the chunks before their first message, so a bag is read from its beginning without its
  * index, which a bag that was not closed does not have. */
 #include "log_bag_internal.h"
+#include "log_bag_write_internal.h"
 
 #include <stdlib.h>
 
@@ -295,4 +296,10 @@ const imki_log_codec imki_log_bag = {.defines_units = true,
                                      .open = open_bag,
                                      .read = imki_ros_read,
                                      .close = close_bag,
-                                     .seek = imki_bag_seek};
+                                     .seek = imki_bag_seek,
+                                     .create = imki_bag_create,
+                                     .begin = imki_bag_begin,
+                                     .format = imki_log_format_matrix,
+                                     .write = imki_bag_write,
+                                     .end = imki_bag_end,
+                                     .discard = imki_bag_discard};

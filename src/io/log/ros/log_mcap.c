@@ -58,4 +58,10 @@ const imki_log_codec imki_log_mcap = {.defines_units = true,
                                       .open = open_mcap,
                                       .read = imki_ros_read,
                                       .close = close_mcap,
-                                      .seek = seek};
+                                      .seek = seek,
+                                      .create = imki_mcap_create,
+                                      .begin = imki_mcap_begin,
+                                      .format = imki_log_format_matrix,
+                                      .write = imki_mcap_write,
+                                      .end = imki_mcap_end,
+                                      .discard = imki_mcap_discard};

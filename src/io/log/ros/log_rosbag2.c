@@ -206,4 +206,9 @@ const imki_log_codec imki_log_rosbag2 = {.folders = true,
                                          .read = imki_ros_read,
                                          .close = close_rosbag2,
                                          .seek = seek,
-                                         .progress = progress};
+                                         .progress = progress,
+                                         .create = imki_rosbag2_create,
+                                         .format = imki_log_format_matrix,
+                                         .write = imki_rosbag2_write,
+                                         .end = imki_rosbag2_end,
+                                         .discard = imki_rosbag2_discard};

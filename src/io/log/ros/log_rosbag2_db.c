@@ -120,8 +120,8 @@ static imk_status check_closed(const char *path, imk_error *error)
                  "with %s behind it",
                  others[i]);
         return imk_error_set(error, IMK_ERROR_OPEN, path, found,
-                             "end the recording, or close it: sqlite3 FILE.db3 'PRAGMA "
-                             "wal_checkpoint(TRUNCATE)'");
+                             "end the recording, or close it: sqlite3 FILE.db3 'SELECT "
+                             "count(*) FROM topics'");
     }
     return IMK_OK;
 }
