@@ -2,10 +2,9 @@
 // Prints the messages of /imu in an MCAP file, as @mcap/core reads them: time, rates, forces; by the
 // index, and with --stream from the beginning, with all CRCs checked.
 "use strict";
-const { open, readFile } = require("fs/promises");
+const { readFile } = require("fs/promises");
 const { McapIndexedReader, McapStreamReader } = require("@mcap/core");
 const { loadDecompressHandlers } = require("@mcap/support");
-const { FileHandleReadable } = require("@mcap/support/nodejs");
 const { parse } = require("@foxglove/rosmsg");
 const { MessageReader } = require("@foxglove/rosmsg2-serialization");
 
@@ -49,17 +48,17 @@ async function main() {
     }
     if (!reader.done()) throw new Error("the file does not end as it should");
   } else {
-    const file = await open(path, "r");
-    const reader = await McapIndexedReader.Initialize({
-      readable: new FileHandleReadable(file),
-      decompressHandlers,
-    });
+    const bytes = await readFile(path);
+    const readable = {
+      size: async () => BigInt(bytes.length),
+      read: async (offset, size) => bytes.subarray(Number(offset), Number(offset + size)),
+    };
+    const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers });
     for await (const message of reader.readMessages()) {
       const channel = reader.channelsById.get(message.channelId);
       print(reader.schemasById.get(channel.schemaId), channel, message);
     }
     console.error(`# ${reader.statistics.messageCount} messages`);
-    await file.close();
   }
 }
 
