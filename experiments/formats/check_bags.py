@@ -60,7 +60,7 @@ def check_reading(count):
     run("node", HERE / "write_mcap.cjs", FILES, count, env=NODE)
     run(PYTHON, HERE / "write_rosbag2.py", FILES, count)
     whole = due(0, count, "ga")
-    cases = [(f"{name}.bag", whole) for name in ("none", "bz2", "lz4")]
+    cases = [(f"{name}.bag", whole) for name in ("none", "bz2", "lz4", "outside")]
     cases += [(f"{name}.mcap", whole)
               for name in ("cdr_none", "cdr_lz4", "cdr_zstd", "ros1_lz4", "big", "unchunked",
                            "no_summary")]

@@ -5,6 +5,7 @@
     write_ros1.py DIRECTORY [SAMPLES]
 
 The samples are those of samples.py. Each bag has a topic of another type, too."""
+import struct
 import sys
 
 import genpy
@@ -41,6 +42,34 @@ def write(path, count, compression="none", chunk=2000, **options):
             bag.write("/imu/data", message(i, **options), received)
 
 
+def write_two(path):
+    """Two sensors, of which one begins later."""
+    with rosbag.Bag(path, "w", chunk_threshold=2000) as bag:
+        for i in range(6):
+            at = samples.stamp(i) + samples.DELAY
+            for topic in ["/left/imu"] + (["/right/imu"] if i > 2 else []):
+                bag.write(topic, message(i), genpy.Time(at // 10**9, at % 10**9))
+
+
+def write_outside(path, source):
+    """The records of the chunks of a bag as records of the file, without an index."""
+    with open(source, "rb") as file:
+        bag = file.read()
+    head = 13 + 8 + 4096
+    place = bag.index(b"index_pos=") + 10
+    out, at = bag[:place] + bytes(8) + bag[place + 8:head], head
+    while at < len(bag):
+        size, = struct.unpack_from("<I", bag, at)
+        header = bag[at + 4:at + 4 + size]
+        length, = struct.unpack_from("<I", bag, at + 4 + size)
+        at += 8 + size
+        if b"op=\5" in header:
+            out += bag[at:at + length]
+        at += length
+    with open(path, "wb") as file:
+        file.write(out)
+
+
 def main():
     directory = sys.argv[1]
     count = int(sys.argv[2]) if len(sys.argv) > 2 else 24
@@ -50,6 +79,8 @@ def main():
     for missing in ("gyro", "accel"):
         write(f"{directory}/no_{missing}.bag", 3, missing=missing)
     write(f"{directory}/unstamped.bag", 3, stamped=False)
+    write_two(f"{directory}/two_topics.bag")
+    write_outside(f"{directory}/outside.bag", f"{directory}/none.bag")
 
 
 main()

@@ -37,6 +37,7 @@ def write(path, first, last, pack=None):
         os.remove(path)
     base = sqlite3.connect(path)
     base.executescript("""
+        PRAGMA page_size = 1024;
         CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,
             serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);
         CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,

@@ -207,6 +207,8 @@ static imk_status next_outside(imki_bag *bag, imki_ros_message *message, bool *f
     if (status == IMK_OK && there)
         imki_ros_mark(log, record.head + record.size, &enough);
     *over = !there || enough;
+    if (!there && imki_log_text_place(log->text) < bag->index_place)
+        log->reader->cut_short = true;
     if (status != IMK_OK || *over)
         return status;
     if (record.header.op == IMKI_BAG_CHUNK)
@@ -277,6 +279,7 @@ static imk_status open_bag(imk_log_reader *reader, imk_error *error)
                              "decrypt it: rosbag decompress FILE.bag");
     bag->first = imki_log_text_place(text);
     bag->log.looked = bag->first;
+    bag->index_place = record.header.index_place;
     if (imki_ros_can_seek(&bag->log))
         status = imki_bag_index_read(bag, &record.header, error);
     return status == IMK_OK ? imki_ros_open(&bag->log, error) : status;

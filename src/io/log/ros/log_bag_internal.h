@@ -33,7 +33,8 @@ typedef struct imki_bag_record {
 typedef struct imki_bag {
     imki_ros_log log;
     imki_ros_inside inside;
-    uint64_t first; /* place of the first record behind the head */
+    uint64_t index_place; /* by its head; 0: it was not closed */
+    uint64_t first;       /* place of the first record behind the head */
     imki_ros_places places;
 } imki_bag;
 

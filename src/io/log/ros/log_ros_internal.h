@@ -70,6 +70,7 @@ struct imki_ros_log {
      * first message of an Imu, so that a pipe can go back, too. */
     bool looking, held;
     uint64_t looked;
+    size_t damaged_before; /* there */
     bool by_receipt; /* stamps are all 0: the times are those of recording */
     bool has[2];     /* gyro, accel */
     int64_t origin;  /* [ns] */

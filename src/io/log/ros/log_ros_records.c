@@ -63,6 +63,7 @@ void imki_ros_mark(imki_ros_log *log, uint64_t size, bool *enough)
         return;
     }
     log->looked = place;
+    log->damaged_before = log->reader->damaged;
     if (!imki_ros_can_seek(log))
         text->hold = text->next;
 }
@@ -71,7 +72,8 @@ imk_status imki_ros_back(imki_ros_log *log, imk_error *error)
 {
     imki_log_text *text = log->text;
     log->reader->cut_short = false;
-    log->reader->damaged = log->reader->first_damaged = 0;
+    log->reader->damaged = log->damaged_before; /* what is behind comes again */
+    log->reader->first_damaged = 0;
     if (imki_ros_can_seek(log))
         return imki_log_text_seek(text, log->looked, error);
     if (text->hold)

@@ -210,8 +210,10 @@ imk_status imki_rosbag2_db_start(imki_rosbag2 *bag, double fraction, imk_error *
         return refuse(db, error);
     const double length = (double)db->last - (double)db->first;
     int64_t from = INT64_MIN;
-    if (fraction > 0.0 && length > 0.0 && length < 9e18)
-        from = db->first + (int64_t)(fraction * length);
+    if (fraction > 0.0 && length > 0.0 && length < 9e18) {
+        const int64_t all = db->last - db->first, step = (int64_t)(fraction * (double)all);
+        from = db->first + (step < all ? step : all);
+    }
     sqlite3_bind_int64(db->query, 1, from);
     db->at = db->first;
     return IMK_OK;

@@ -52,9 +52,10 @@ static int file_close(sqlite3_file *file)
 
 static int file_read(sqlite3_file *file, void *to, int size, sqlite3_int64 place)
 {
-    const ssize_t got =
-        read_bytes(((const source *)file)->bytes, to, (size_t)size, (uint64_t)place);
-    if (got < 0)
+    const imki_sqlite_bytes *bytes = ((const source *)file)->bytes;
+    const ssize_t got = read_bytes(bytes, to, (size_t)size, (uint64_t)place);
+    /* Zeros in the place of a page that is missing would be taken for its content. */
+    if (got < 0 || (got < size && bytes->claimed > bytes->size))
         return SQLITE_IOERR_READ;
     memset((char *)to + got, 0, (size_t)size - (size_t)got);
     return got == size ? SQLITE_OK : SQLITE_IOERR_SHORT_READ;
