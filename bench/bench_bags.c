@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Messages sensor_msgs/Imu read from bags of each container and compression, and written, millions
- * per second. One core; the bytes are in memory, those of databases in a file in /dev/shm or TMPDIR.
- * The yardstick of reading is what no reader can do without: unpacking the chunks and adding up
- * their CRC-32, where they have one. */
+ * per second. One core; the bytes are in memory, those of databases in a file in /dev/shm or
+ * TMPDIR. The yardstick of reading is what no reader can do without: unpacking the chunks and
+ * adding up their CRC-32, where they have one. */
 #include "bench.h"
 
 #include "imukit/io.h"
@@ -107,8 +107,8 @@ static void pack(bytes *to, const char *packing, const uint8_t *from, size_t siz
         packed = ZSTD_compress(room, most, from, size, 1);
     } else if (strcmp(packing, "bz2") == 0) {
         unsigned length = (unsigned)most;
-        if (BZ2_bzBuffToBuffCompress((char *)room, &length, (char *)(uintptr_t)from,
-                                     (unsigned)size, 9, 0, 0) != BZ_OK)
+        if (BZ2_bzBuffToBuffCompress((char *)room, &length, (char *)(uintptr_t)from, (unsigned)size,
+                                     9, 0, 0) != BZ_OK)
             stop("bz2", NULL);
         packed = length;
     } else {
@@ -204,10 +204,10 @@ static void read_log(void *context)
     size_t rows = 1, total = 0;
     for (int c = 0; c < COLUMNS; c++)
         to[c] = block[c];
-    const imk_status status =
-        from->path ? imk_log_open(from->path, NULL, &reader, &error)
-                   : imk_log_open_memory((const char *)from->memory->at, from->memory->size, NULL,
-                                         &reader, &error);
+    const imk_status status = from->path
+                                  ? imk_log_open(from->path, NULL, &reader, &error)
+                                  : imk_log_open_memory((const char *)from->memory->at,
+                                                        from->memory->size, NULL, &reader, &error);
     if (status != IMK_OK)
         stop("cannot open", &error);
     while (rows > 0) {

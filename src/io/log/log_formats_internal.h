@@ -12,9 +12,12 @@
  * that of texts, of standard output and of names with any other ending. */
 #define IMKI_LOG_FORMATS(ROW)                                                                      \
     ROW(csv, "csv", "CSV", ".csv .txt", NULL, NULL, true)                                          \
-    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)                                  \
+    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)                                 \
     ROW(bag, "bag", "ROS 1 bag", ".bag", "#ROSBAG V", NULL, true)                                  \
-    ROW(mcap, "mcap", "MCAP", ".mcap", "\x89" "MCAP0\r\n", NULL, true)                            \
+    ROW(mcap, "mcap", "MCAP", ".mcap",                                                             \
+        "\x89"                                                                                     \
+        "MCAP0\r\n",                                                                               \
+        NULL, true)                                                                                \
     ROW(rosbag2, "rosbag2", "rosbag2", ".db3", "SQLite format 3", NULL, true)
 
 /* What a format sees of a log that is written. */

@@ -163,13 +163,16 @@ imk_status imk_log_streams(const char *path, const imk_log_settings *settings, s
     const imk_log_settings usual = imk_log_default();
     imk_log_settings any = settings ? *settings : usual;
     imk_log_reader *made;
+    imk_error reason;
     any.topic = NULL;
     any.instance = 0;
-    imk_status status = open_path(path, &any, &made, error);
+    imk_status status = open_path(path, &any, &made, &reason);
     /* That none is chosen, or none can be read, is no error here. */
     if (made && made->stream_count > 0 &&
         (status == IMK_ERROR_NAME_UNKNOWN || status == IMK_ERROR_EMPTY))
         status = IMK_OK;
+    if (status != IMK_OK && error)
+        *error = reason;
     if (status == IMK_OK) {
         *count = made->stream_count > 0 ? made->stream_count : 1;
         for (size_t i = 0; i < made->stream_count && i < most; i++)

@@ -88,7 +88,7 @@ struct imk_log_reader {
     /* Met by the format: rows, messages or blocks that are left out; the end within one. */
     size_t damaged, first_damaged;
     bool cut_short;
-    bool received; /* the times are those of recording, as the stamps are all 0 */
+    bool received;      /* the times are those of recording, as the stamps are all 0 */
     double rate;        /* [Hz]; 0: from the times */
     double time_origin; /* in the unit of the file */
     double last_time;   /* [s] */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bags as the reference programs wrote them (tests/fixtures): every row to the last bit, from files,
- * memory and pipes; what an index tells; bags that are cut short or damaged. */
+/* Bags as the reference programs wrote them (tests/fixtures): every row to the last bit, from
+ * files, memory and pipes; what an index tells; bags that are cut short or damaged. */
 #define _POSIX_C_SOURCE 200809L
 #include "bag_files.h"
 
@@ -35,9 +35,9 @@ static void check_rows(const bag_table *t, size_t first, size_t from)
 }
 
 static const char *const whole[] = {
-    "none.bag",        "bz2.bag",       "lz4.bag",         "outside.bag", "cdr_none.mcap",
-    "cdr_lz4.mcap",    "cdr_zstd.mcap", "ros1_lz4.mcap",   "big.mcap",    "unchunked.mcap",
-    "no_summary.mcap", "single.db3",    "two",             "packed",      "messages",
+    "none.bag",        "bz2.bag",       "lz4.bag",       "outside.bag", "cdr_none.mcap",
+    "cdr_lz4.mcap",    "cdr_zstd.mcap", "ros1_lz4.mcap", "big.mcap",    "unchunked.mcap",
+    "no_summary.mcap", "single.db3",    "two",           "packed",      "messages",
 };
 enum { WHOLE = sizeof whole / sizeof whole[0] };
 
@@ -231,7 +231,8 @@ static void test_no_seek_in_a_pipe(void **state)
 
 /* ---- faults ---- */
 
-/* However a log is cut, what is read is its beginning, and it is told; or it is refused in words. */
+/* However a log is cut, what is read is its beginning, and it is told; or it is refused in words.
+ */
 static void test_cut_short(void **state)
 {
     (void)state;

@@ -21,8 +21,8 @@ static int make_rows(void **state)
     for (size_t i = 0; i < ROWS; i++)
         for (size_t c = 0; c < BAG_COLUMNS; c++) {
             random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-            data[c][i] = c == 0 ? (double)((int64_t)i * 5000001) / 1e9
-                                : (double)(int64_t)random * 0x1p-60;
+            data[c][i] =
+                c == 0 ? (double)((int64_t)i * 5000001) / 1e9 : (double)(int64_t)random * 0x1p-60;
         }
     return 0;
 }
@@ -147,8 +147,8 @@ static void test_without_rows(void **state)
     }
 }
 
-static void check_refused(const char *path, size_t count, const char *const *name, const char *field,
-                          const char *expected)
+static void check_refused(const char *path, size_t count, const char *const *name,
+                          const char *field, const char *expected)
 {
     imk_log_writer *writer;
     imk_error error;
@@ -168,8 +168,8 @@ static void test_refused_columns(void **state)
         char due[128];
         const char *const hot[] = {"time", "gyro_x", "gyro_y", "gyro_z", "temperature", "accel_x"};
         bag_path(endings[k], path);
-        snprintf(due, sizeof due, "imukit convert FILE.csv FILE%s --select time,gyro_x,gyro_y,gyro_z",
-                 endings[k]);
+        snprintf(due, sizeof due,
+                 "imukit convert FILE.csv FILE%s --select time,gyro_x,gyro_y,gyro_z", endings[k]);
         check_refused(path, 5, hot, "temperature", due);
         const char *const two[] = {"time", "gyro_x", "gyro_y", "gyro_z", "accel_x"};
         check_refused(path, 5, two, "accel_x", due);

@@ -4,8 +4,8 @@
  *     length of the header, fields of the header; length of the data, data
  *     field: length, name=value
  *
- * with the field `op`: 3 the head of the bag, 5 a chunk of records, 7 a connection (a publisher of a
- * topic), 2 a message, 4 the index of a chunk, 6 where a chunk is and what is in it. Connections
+ * with the field `op`: 3 the head of the bag, 5 a chunk of records, 7 a connection (a publisher of
+ * a topic), 2 a message, 4 the index of a chunk, 6 where a chunk is and what is in it. Connections
  * stand in the chunks before their first message, so a bag is read from its beginning without its
  * index, which a bag that was not closed does not have. */
 #include "log_bag_internal.h"
@@ -172,8 +172,7 @@ static imk_status enter_chunk(imki_bag *bag, imki_bag_record *record, imk_error 
     bag->inside.cut = !whole;
     bag->inside.behind = whole ? all : at_hand;
     return imki_ros_enter(log, &bag->inside, record->header.compression, record->data,
-                          (size_t)bag->inside.behind - record->head, record->header.size, 0,
-                          error);
+                          (size_t)bag->inside.behind - record->head, record->header.size, 0, error);
 }
 
 /* A record of the chunk that is open. */
@@ -191,9 +190,8 @@ static imk_status next_inside(imki_bag *bag, imki_ros_message *message, bool *fo
     *found = record.header.op == IMKI_BAG_MESSAGE;
     if (*found)
         give(&record, message);
-    return record.header.op == IMKI_BAG_CONNECTION
-               ? imki_bag_connection(&bag->log, &record, error)
-               : IMK_OK;
+    return record.header.op == IMKI_BAG_CONNECTION ? imki_bag_connection(&bag->log, &record, error)
+                                                   : IMK_OK;
 }
 
 /* A record of the file. *over: there are no more. */

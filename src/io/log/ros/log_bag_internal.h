@@ -18,8 +18,8 @@ enum {
 /* The fields of the header of a record, 0 and empty where not there. */
 typedef struct imki_bag_header {
     uint64_t op, connection, time, size;
-    uint64_t index_place, connections, chunks;       /* of the head of the bag */
-    uint64_t chunk_place, begin, end, count;         /* of where a chunk is */
+    uint64_t index_place, connections, chunks; /* of the head of the bag */
+    uint64_t chunk_place, begin, end, count;   /* of where a chunk is */
     imki_log_piece topic, compression, encryptor, type, digest;
 } imki_bag_header;
 

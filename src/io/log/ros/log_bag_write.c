@@ -153,7 +153,8 @@ static imk_status close_chunk(imki_log_output *log)
     imki_ros_gather_bytes(&index, bag->places.bytes, bag->places.size);
     close_length(&index, length);
 
-    imk_status status = bag->index.failed || bag->places.failed ? IMK_ERROR_MEMORY : put(log, &head);
+    imk_status status =
+        bag->index.failed || bag->places.failed ? IMK_ERROR_MEMORY : put(log, &head);
     if (status == IMK_OK)
         status = put(log, &bag->chunk);
     if (status == IMK_OK)

@@ -78,8 +78,8 @@ static imk_status add_schema(imki_mcap *mcap, imki_mcap_members *members, imk_er
 static imki_ros_encoding encoding_of(imki_log_piece encoding, const char *type)
 {
     const bool imu1 = strcmp(type, "sensor_msgs/Imu") == 0;
-    const bool imu2 = strcmp(type, "sensor_msgs/msg/Imu") == 0 ||
-                      strcmp(type, "sensor_msgs::msg::Imu") == 0;
+    const bool imu2 =
+        strcmp(type, "sensor_msgs/msg/Imu") == 0 || strcmp(type, "sensor_msgs::msg::Imu") == 0;
     return imu1 && is(encoding, "ros1")            ? IMKI_ROS_1
            : (imu1 || imu2) && is(encoding, "cdr") ? IMKI_ROS_CDR
                                                    : IMKI_ROS_OTHER;
@@ -256,8 +256,7 @@ static imk_status next_outside(imki_mcap *mcap, imki_ros_message *message, bool 
     return status;
 }
 
-imk_status imki_mcap_next(imki_mcap *mcap, imki_ros_message *message, bool *found,
-                          imk_error *error)
+imk_status imki_mcap_next(imki_mcap *mcap, imki_ros_message *message, bool *found, imk_error *error)
 {
     imk_status status = IMK_OK;
     *found = false;

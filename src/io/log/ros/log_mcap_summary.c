@@ -6,7 +6,11 @@
 
 #include <zlib.h>
 
-enum { FOOTER = 20, TAIL = IMKI_MCAP_HEAD + FOOTER + IMKI_MCAP_MAGIC, SUMMED = IMKI_MCAP_HEAD + 16 };
+enum {
+    FOOTER = 20,
+    TAIL = IMKI_MCAP_HEAD + FOOTER + IMKI_MCAP_MAGIC,
+    SUMMED = IMKI_MCAP_HEAD + 16
+};
 
 /* Where the summary begins; 0: there is none. */
 static imk_status find_summary(imki_mcap *mcap, uint64_t *begin, uint64_t *end, uint32_t *sum,

@@ -246,8 +246,7 @@ static void put_summary(mcap_writer *mcap)
     put_u32(to, 0);
     close_record(to, begin);
     if (!to->failed)
-        imki_put_u32(to->bytes + to->size - 4,
-                     (uint32_t)crc32_z(0, to->bytes, to->size - 4));
+        imki_put_u32(to->bytes + to->size - 4, (uint32_t)crc32_z(0, to->bytes, to->size - 4));
     imki_ros_gather_bytes(to, IMKI_MCAP_MAGIC_TEXT, IMKI_MCAP_MAGIC);
 }
 

@@ -15,8 +15,11 @@ imki_ros_packing imki_ros_packing_named(imki_log_piece name)
     static const struct {
         const char *name;
         imki_ros_packing packing;
-    } known[] = {{"", IMKI_ROS_PLAIN},   {"none", IMKI_ROS_PLAIN}, {"bz2", IMKI_ROS_BZ2},
-                 {"lz4", IMKI_ROS_LZ4}, {"zstd", IMKI_ROS_ZSTD}};
+    } known[] = {{"", IMKI_ROS_PLAIN},
+                 {"none", IMKI_ROS_PLAIN},
+                 {"bz2", IMKI_ROS_BZ2},
+                 {"lz4", IMKI_ROS_LZ4},
+                 {"zstd", IMKI_ROS_ZSTD}};
     const size_t length = (size_t)(name.end - name.begin);
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
         if (strlen(known[i].name) == length && memcmp(known[i].name, name.begin, length) == 0)

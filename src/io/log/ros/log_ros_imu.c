@@ -31,8 +31,7 @@ enum {
 };
 
 /* ROS 1 lists the definitions of the types within behind lines of 80 "=". */
-#define RULE                                                                                       \
-    "================================================================================\n"
+#define RULE "================================================================================\n"
 #define FIELDS                                                                                     \
     "geometry_msgs/Quaternion orientation\n"                                                       \
     "float64[9] orientation_covariance\n"                                                          \
@@ -45,9 +44,8 @@ enum {
          "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n" RULE "MSG: geometry_msgs/Vector3\n"        \
          "float64 x\nfloat64 y\nfloat64 z\n"
 
-const char imki_ros1_imu_definition[] =
-    "Header header\n" FIELDS RULE "MSG: std_msgs/Header\n"
-    "uint32 seq\ntime stamp\nstring frame_id\n" WITHIN;
+const char imki_ros1_imu_definition[] = "Header header\n" FIELDS RULE "MSG: std_msgs/Header\n"
+                                        "uint32 seq\ntime stamp\nstring frame_id\n" WITHIN;
 const char imki_ros2_imu_definition[] =
     "std_msgs/Header header\n" FIELDS RULE "MSG: std_msgs/Header\n"
     "builtin_interfaces/Time stamp\nstring frame_id\n" RULE "MSG: builtin_interfaces/Time\n"
@@ -75,8 +73,7 @@ static void read_values(const uint8_t *at, bool big, imki_imu *imu)
     for (int k = 0; k < 2; k++) {
         imu->has[k] = get(at + (size_t)(8 * covariance[k])) != -1.0;
         for (int i = 0; i < 3; i++)
-            imu->value[k][i] =
-                imu->has[k] ? get(at + (size_t)(8 * (first[k] + i))) : (double)NAN;
+            imu->value[k][i] = imu->has[k] ? get(at + (size_t)(8 * (first[k] + i))) : (double)NAN;
     }
 }
 
@@ -138,7 +135,7 @@ size_t imki_ros_imu_write(imki_ros_encoding encoding, const imki_imu *imu, uint3
     at = imki_put_u32(at, cdr ? 4 : 3);
     memcpy(at, "imu", 3);
     at += cdr ? 4 : 3;
-    imki_put_f64(at + 8 * ORIENTATION_W, 1.0); /* no turn */
+    imki_put_f64(at + 8 * ORIENTATION_W, 1.0);           /* no turn */
     imki_put_f64(at + 8 * ORIENTATION_COVARIANCE, -1.0); /* the orientation is not known */
     for (int k = 0; k < 2; k++) {
         if (!imu->has[k])

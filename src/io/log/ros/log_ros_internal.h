@@ -10,10 +10,10 @@
 
 enum {
     IMKI_ROS_CHANNELS_MAX = 10000,
-    IMKI_ROS_LOOK = 16,              /* messages of a topic that tell what it has */
-    IMKI_ROS_LOOK_BYTES = 16 << 20,  /* of a log without index that are looked at for topics */
-    IMKI_ROS_RECORD_MAX = 1 << 30,   /* bytes of a chunk or message */
-    IMKI_ROS_MESSAGE_MAX = 1 << 20   /* bytes of an Imu message that is compressed by itself */
+    IMKI_ROS_LOOK = 16,             /* messages of a topic that tell what it has */
+    IMKI_ROS_LOOK_BYTES = 16 << 20, /* of a log without index that are looked at for topics */
+    IMKI_ROS_RECORD_MAX = 1 << 30,  /* bytes of a chunk or message */
+    IMKI_ROS_MESSAGE_MAX = 1 << 20  /* bytes of an Imu message that is compressed by itself */
 };
 
 /* A message as it stands in the log. */
@@ -45,8 +45,7 @@ typedef struct imki_ros_log imki_ros_log;
 /* The functions of a container. */
 typedef struct imki_ros_container {
     /* The next message; *found is false at the end. Damage is told by imki_log_damage(). */
-    imk_status (*next)(imki_ros_log *log, imki_ros_message *message, bool *found,
-                       imk_error *error);
+    imk_status (*next)(imki_ros_log *log, imki_ros_message *message, bool *found, imk_error *error);
     /* Go back to where `looked` is, or to the first message; see imki_ros_log.looking. */
     imk_status (*back)(imki_ros_log *log, imk_error *error);
 } imki_ros_container;
@@ -62,20 +61,20 @@ struct imki_ros_log {
     size_t channel_count, channel_room;
     imki_ros_channel last; /* looked up, if last_known */
     bool last_known;
-    size_t topic;          /* the one that is read */
-    bool indexed;          /* all topics are known */
-    bool counted;          /* and their numbers of messages */
-    bool moved;            /* by imk_log_seek(): channels may be unknown */
+    size_t topic; /* the one that is read */
+    bool indexed; /* all topics are known */
+    bool counted; /* and their numbers of messages */
+    bool moved;   /* by imk_log_seek(): channels may be unknown */
     /* In the look at the beginning: bytes are kept from where `looked` is, a record before the
      * first message of an Imu, so that a pipe can go back, too. */
     bool looking, held;
     uint64_t looked;
     size_t damaged_before; /* there */
-    bool by_receipt; /* stamps are all 0: the times are those of recording */
-    bool has[2];     /* gyro, accel */
-    int64_t origin;  /* [ns] */
-    size_t rows;     /* of the present call, for the place of damage */
-    bool packed;     /* each message is compressed by zstd */
+    bool by_receipt;       /* stamps are all 0: the times are those of recording */
+    bool has[2];           /* gyro, accel */
+    int64_t origin;        /* [ns] */
+    size_t rows;           /* of the present call, for the place of damage */
+    bool packed;           /* each message is compressed by zstd */
     uint8_t *unpacked;
 };
 

@@ -20,9 +20,7 @@ static bool decode(imki_ros_log *log, const imki_ros_topic *of, const imki_ros_m
     const uint8_t *data = message->data;
     size_t size = message->size;
     if (log->packed) {
-        size = log->unpacked
-                   ? ZSTD_decompress(log->unpacked, IMKI_ROS_MESSAGE_MAX, data, size)
-                   : 0;
+        size = log->unpacked ? ZSTD_decompress(log->unpacked, IMKI_ROS_MESSAGE_MAX, data, size) : 0;
         data = log->unpacked;
         if (ZSTD_isError(size))
             return false;
@@ -76,7 +74,7 @@ static imk_status choose(imki_ros_log *log, imk_error *error)
     for (size_t i = 0; i < log->topic_count && status == IMK_OK; i++) {
         imki_ros_topic *topic = &log->topics[i];
         /* One that nobody published to is not to be asked about. */
-        const bool used = log->counted    ? topic->stream.samples > 0
+        const bool used = log->counted   ? topic->stream.samples > 0
                           : log->indexed ? true
                                          : topic->seen > 0;
         topic->stream.readable = topic->encoding != IMKI_ROS_OTHER && used;
@@ -92,8 +90,8 @@ static imk_status choose(imki_ros_log *log, imk_error *error)
 
 static imk_status make_layout(imki_ros_log *log, imk_error *error)
 {
-    static const char *const all[7] = {"time [s]",        "gyro_x [rad/s]",  "gyro_y [rad/s]",
-                                       "gyro_z [rad/s]",  "accel_x [m/s^2]", "accel_y [m/s^2]",
+    static const char *const all[7] = {"time [s]",       "gyro_x [rad/s]",  "gyro_y [rad/s]",
+                                       "gyro_z [rad/s]", "accel_x [m/s^2]", "accel_y [m/s^2]",
                                        "accel_z [m/s^2]"};
     const imki_ros_topic *topic = &log->topics[log->topic];
     const char *names[7] = {all[0]};
@@ -193,8 +191,8 @@ imk_status imki_ros_read(imk_log_reader *reader, size_t max_rows, double *const 
         if (topic != &log->topics[log->topic]) {
             if (!topic && !log->moved)
                 imki_log_damage(reader, log->rows);
-            if (topic && topic->encoding != IMKI_ROS_OTHER && topic->seen++ == 0 &&
-                !log->indexed && !reader->settings.topic)
+            if (topic && topic->encoding != IMKI_ROS_OTHER && topic->seen++ == 0 && !log->indexed &&
+                !reader->settings.topic)
                 return refuse_second(log, topic, error);
             continue;
         }

@@ -24,8 +24,8 @@ static void copy_text(imki_log_piece piece, char *text, size_t size)
     size_t length = (size_t)(piece.end - piece.begin);
     length = length < sizeof whole - 1 ? length : sizeof whole - 1;
     for (size_t i = 0; i < length; i++)
-        whole[i] = (unsigned char)piece.begin[i] < 32 || piece.begin[i] == 127 ? '?'
-                                                                               : piece.begin[i];
+        whole[i] =
+            (unsigned char)piece.begin[i] < 32 || piece.begin[i] == 127 ? '?' : piece.begin[i];
     whole[length] = '\0';
     imk_utf8_shorten(whole, text, size);
 }

@@ -25,8 +25,8 @@ static void suggest(const imki_ros_writer *writer, const imki_log_output *log, c
                     size_t size, char *text)
 {
     const char *ending = strrchr(path, '.');
-    int used = snprintf(text, size, "imukit convert FILE.csv FILE%.8s --select ",
-                        ending ? ending : "");
+    int used =
+        snprintf(text, size, "imukit convert FILE.csv FILE%.8s --select ", ending ? ending : "");
     text[0] = writer->time >= 0 && (writer->has[0] || writer->has[1]) ? text[0] : '\0';
     for (size_t i = 0; i < log->rows.column_count && text[0] && (size_t)used < size; i++) {
         const int place = place_of(&log->column[i]);
@@ -97,9 +97,9 @@ bool imki_ros_writer_take(imki_ros_writer *writer, const char *row, imki_imu *im
         writer->refused_time = time;
         return false;
     }
-    *imu = (imki_imu){.stamp = (int64_t)floor(time) * 1000000000 +
-                               llround((time - floor(time)) * 1e9),
-                      .has = {writer->has[0], writer->has[1]}};
+    *imu =
+        (imki_imu){.stamp = (int64_t)floor(time) * 1000000000 + llround((time - floor(time)) * 1e9),
+                   .has = {writer->has[0], writer->has[1]}};
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 3 && writer->has[k]; i++)
             imu->value[k][i] = imki_get_f64(cells + 8 * writer->column[k][i]);

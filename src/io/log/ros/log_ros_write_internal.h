@@ -8,7 +8,9 @@
 
 #define IMKI_ROS_TOPIC "/imu"
 
-enum { IMKI_ROS_CHUNK_WRITTEN = 768 * 1024 }; /* bytes of a chunk before it is closed, as rosbag's */
+enum {
+    IMKI_ROS_CHUNK_WRITTEN = 768 * 1024
+}; /* bytes of a chunk before it is closed, as rosbag's */
 
 /* Where the cells of a row go. The state of each writer begins with it. */
 typedef struct imki_ros_writer {

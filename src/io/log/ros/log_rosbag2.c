@@ -95,8 +95,8 @@ static imk_status open_folder(imki_rosbag2 *bag, const char *folder, imk_error *
         size--;
     char *name = strndup(folder, size);
     path = malloc(size + sizeof "/metadata.yaml");
-    imk_status status = name && path ? IMK_OK
-                                     : imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    imk_status status =
+        name && path ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     if (status == IMK_OK) {
         snprintf(path, size + sizeof "/metadata.yaml", "%s/metadata.yaml", name);
         status = imki_text_file_read(path, METADATA_MAX, &text, &size, error);

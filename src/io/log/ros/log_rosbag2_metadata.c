@@ -22,10 +22,10 @@
 imki_ros_encoding imki_rosbag2_encoding(imki_log_piece type, imki_log_piece serialisation)
 {
     static const char imu[] = "sensor_msgs/msg/Imu";
-    const bool cdr = serialisation.end - serialisation.begin == 3 &&
-                     memcmp(serialisation.begin, "cdr", 3) == 0;
-    const bool is_imu = type.end - type.begin == sizeof imu - 1 &&
-                        memcmp(type.begin, imu, sizeof imu - 1) == 0;
+    const bool cdr =
+        serialisation.end - serialisation.begin == 3 && memcmp(serialisation.begin, "cdr", 3) == 0;
+    const bool is_imu =
+        type.end - type.begin == sizeof imu - 1 && memcmp(type.begin, imu, sizeof imu - 1) == 0;
     return cdr && is_imu ? IMKI_ROS_CDR : IMKI_ROS_OTHER;
 }
 
@@ -70,8 +70,8 @@ static imk_status take_topic(imki_rosbag2 *bag, const imk_document *document, in
     uint32_t topic;
     if (!number_of(document, entry, "message_count", &messages) || messages < 0)
         return IMK_OK;
-    const imk_status status = imki_ros_topic_add(&bag->log, name, type,
-                                                 imki_rosbag2_encoding(type, form), &topic, error);
+    const imk_status status =
+        imki_ros_topic_add(&bag->log, name, type, imki_rosbag2_encoding(type, form), &topic, error);
     if (status != IMK_OK)
         return status;
     imk_log_stream *stream = &bag->log.topics[topic].stream;
@@ -142,8 +142,8 @@ static imk_status take_form(imki_rosbag2 *bag, const imk_document *document, int
     const char *mode = text_of(document, root, "compression_mode");
     char found[96];
     bag->of_mcap = strcmp(storage, "mcap") == 0;
-    bag->log.packed = *packing != '\0' && (strcmp(mode, "MESSAGE") == 0 ||
-                                           strcmp(mode, "message") == 0);
+    bag->log.packed =
+        *packing != '\0' && (strcmp(mode, "MESSAGE") == 0 || strcmp(mode, "message") == 0);
     if (!bag->of_mcap && strcmp(storage, "sqlite3") != 0) {
         snprintf(found, sizeof found, "the storage of the bag is \"%.32s\"", storage);
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "storage_identifier", found,
@@ -162,8 +162,7 @@ imk_status imki_rosbag2_metadata(imki_rosbag2 *bag, const char *folder, const ch
 {
     static const char head[] = "rosbag2_bagfile_information";
     imk_document *document;
-    imk_status status =
-        imki_document_parse_as("metadata", head, text, size, &document, error);
+    imk_status status = imki_document_parse_as("metadata", head, text, size, &document, error);
     if (status != IMK_OK)
         return status;
     const int root = value_of(document, 0, head, IMKI_NODE_MAPPING);

@@ -244,8 +244,8 @@ static void find_claim(imki_sqlite_bytes *bytes)
     if (read_bytes(bytes, head, HEAD, 0) != HEAD)
         return;
     const uint32_t page = (uint32_t)head[16] << 8 | head[17];
-    const uint64_t pages = (uint32_t)head[28] << 24 | (uint32_t)head[29] << 16 |
-                           (uint32_t)head[30] << 8 | head[31];
+    const uint64_t pages =
+        (uint32_t)head[28] << 24 | (uint32_t)head[29] << 16 | (uint32_t)head[30] << 8 | head[31];
     const uint64_t size = pages * (page == 1 ? 65536 : page);
     if (size > bytes->size)
         bytes->claimed = size;
