@@ -13,12 +13,6 @@
 
 #include <stdlib.h>
 
-static bool is(imki_log_piece piece, const char *text)
-{
-    const size_t length = (size_t)(piece.end - piece.begin);
-    return strlen(text) == length && memcmp(piece.begin, text, length) == 0;
-}
-
 /* The next field of a header. @return false: there is none, or it is damaged (*at is not end) */
 static bool take_field(const uint8_t **at, const uint8_t *end, imki_log_piece *name,
                        imki_log_piece *value)
@@ -66,7 +60,7 @@ static bool take_header(const uint8_t *at, size_t size, imki_bag_header *header)
         const size_t length = (size_t)(value.end - value.begin);
         const uint8_t *bytes = (const uint8_t *)value.begin;
         for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-            if (!is(name, known[i].name))
+            if (!imki_piece_is(name, known[i].name))
                 continue;
             if (known[i].text)
                 *known[i].text = value;
@@ -105,8 +99,9 @@ imk_status imki_bag_connection(imki_ros_log *log, const imki_bag_record *record,
         imki_log_damage(log->reader, log->rows);
         return IMK_OK;
     }
-    const bool imu = is(about.type, "sensor_msgs/Imu") &&
-                     (is(about.digest, imki_ros1_imu_digest) || is(about.digest, "*"));
+    const bool imu =
+        imki_piece_is(about.type, "sensor_msgs/Imu") &&
+        (imki_piece_is(about.digest, imki_ros1_imu_digest) || imki_piece_is(about.digest, "*"));
     return imki_ros_channel_add(log, (uint32_t)record->header.connection, record->header.topic,
                                 about.type, imu ? IMKI_ROS_1 : IMKI_ROS_OTHER, &topic, error);
 }
@@ -272,7 +267,7 @@ static imk_status open_bag(imk_log_reader *reader, imk_error *error)
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "the bag has no head",
                              "copy the file again");
     const imki_log_piece cipher = record.header.encryptor;
-    if (cipher.end > cipher.begin && !is(cipher, "rosbag/NoEncryptor"))
+    if (cipher.end > cipher.begin && !imki_piece_is(cipher, "rosbag/NoEncryptor"))
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "the bag is encrypted",
                              "decrypt it: rosbag decompress FILE.bag");
     bag->first = imki_log_text_place(text);

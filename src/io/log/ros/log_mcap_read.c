@@ -27,12 +27,6 @@ imki_log_piece imki_mcap_text(imki_mcap_members *members)
     return at ? (imki_log_piece){at, at + size} : (imki_log_piece){"", ""};
 }
 
-static bool is(imki_log_piece piece, const char *text)
-{
-    const size_t length = (size_t)(piece.end - piece.begin);
-    return strlen(text) == length && memcmp(piece.begin, text, length) == 0;
-}
-
 /* ---- schemas and channels ---- */
 
 static imki_mcap_schema *find_schema(const imki_mcap *mcap, uint32_t id)
@@ -80,9 +74,9 @@ static imki_ros_encoding encoding_of(imki_log_piece encoding, const char *type)
     const bool imu1 = strcmp(type, "sensor_msgs/Imu") == 0;
     const bool imu2 =
         strcmp(type, "sensor_msgs/msg/Imu") == 0 || strcmp(type, "sensor_msgs::msg::Imu") == 0;
-    return imu1 && is(encoding, "ros1")            ? IMKI_ROS_1
-           : (imu1 || imu2) && is(encoding, "cdr") ? IMKI_ROS_CDR
-                                                   : IMKI_ROS_OTHER;
+    return imu1 && imki_piece_is(encoding, "ros1")            ? IMKI_ROS_1
+           : (imu1 || imu2) && imki_piece_is(encoding, "cdr") ? IMKI_ROS_CDR
+                                                              : IMKI_ROS_OTHER;
 }
 
 static imk_status add_channel(imki_mcap *mcap, imki_mcap_members *members, imk_error *error)

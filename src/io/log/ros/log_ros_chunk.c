@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <zlib.h>
 #include <zstd.h>
+#include <zstd_errors.h>
 
 imki_ros_packing imki_ros_packing_named(imki_log_piece name)
 {
@@ -20,9 +21,8 @@ imki_ros_packing imki_ros_packing_named(imki_log_piece name)
                  {"bz2", IMKI_ROS_BZ2},
                  {"lz4", IMKI_ROS_LZ4},
                  {"zstd", IMKI_ROS_ZSTD}};
-    const size_t length = (size_t)(name.end - name.begin);
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
-        if (strlen(known[i].name) == length && memcmp(known[i].name, name.begin, length) == 0)
+        if (imki_piece_is(name, known[i].name))
             return known[i].packing;
     return IMKI_ROS_PACKING_UNKNOWN;
 }
@@ -31,6 +31,7 @@ imki_ros_packing imki_ros_packing_named(imki_log_piece name)
 typedef struct step {
     size_t taken, given;
     bool failed, over;
+    bool memory; /* failed for want of it, and not because of the bytes */
 } step;
 
 static void step_bz2(bz_stream *z, const uint8_t *from, size_t size, uint8_t *to, size_t room,
@@ -47,6 +48,7 @@ static void step_bz2(bz_stream *z, const uint8_t *from, size_t size, uint8_t *to
     s->given = out - z->avail_out;
     s->over = result == BZ_STREAM_END;
     s->failed = result != BZ_OK && !s->over;
+    s->memory = result == BZ_MEM_ERROR;
 }
 
 static void step_lz4(LZ4F_dctx *lz4, const uint8_t *from, size_t size, uint8_t *to, size_t room,
@@ -57,8 +59,11 @@ static void step_lz4(LZ4F_dctx *lz4, const uint8_t *from, size_t size, uint8_t *
     const size_t result = LZ4F_decompress(lz4, to, &s->given, from, &s->taken, NULL);
     s->failed = LZ4F_isError(result) != 0;
     s->over = result == 0;
-    if (s->failed)
+    if (s->failed) {
         s->taken = s->given = 0;
+        /* Its number is no part of the library's public interface. */
+        s->memory = strcmp(LZ4F_getErrorName(result), "ERROR_allocation_failed") == 0;
+    }
 }
 
 static void step_zstd(ZSTD_DCtx *zstd, const uint8_t *from, size_t size, uint8_t *to, size_t room,
@@ -70,6 +75,7 @@ static void step_zstd(ZSTD_DCtx *zstd, const uint8_t *from, size_t size, uint8_t
     s->taken = in.pos;
     s->given = out.pos;
     s->failed = ZSTD_isError(result) != 0;
+    s->memory = ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation;
     s->over = result == 0;
 }
 
@@ -139,7 +145,7 @@ imk_status imki_ros_unpack(imki_ros_chunk *chunk, imki_ros_packing packing, cons
         BZ2_bzDecompressEnd(&d.bz2);
     *intact = s.over && !s.failed && chunk->size == due;
     chunk->size = chunk->size < due ? chunk->size : (size_t)due;
-    return enough ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    return enough && !s.memory ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
 }
 
 void imki_ros_chunk_free(imki_ros_chunk *chunk)

@@ -76,7 +76,15 @@ struct imki_ros_log {
     size_t rows;           /* of the present call, for the place of damage */
     bool packed;           /* each message is compressed by zstd */
     uint8_t *unpacked;
+    void *unpacker;
 };
+
+/* Is this the text? A piece that is not there is empty. */
+static inline bool imki_piece_is(imki_log_piece piece, const char *text)
+{
+    const size_t length = (size_t)(piece.end - piece.begin);
+    return strlen(text) == length && (length == 0 || memcmp(piece.begin, text, length) == 0);
+}
 
 /* ---- log_ros_topics.c ------------------------------------------------------------------------ */
 

@@ -20,7 +20,7 @@ static bool decode(imki_ros_log *log, const imki_ros_topic *of, const imki_ros_m
     const uint8_t *data = message->data;
     size_t size = message->size;
     if (log->packed) {
-        size = log->unpacked ? ZSTD_decompress(log->unpacked, IMKI_ROS_MESSAGE_MAX, data, size) : 0;
+        size = ZSTD_decompressDCtx(log->unpacker, log->unpacked, IMKI_ROS_MESSAGE_MAX, data, size);
         data = log->unpacked;
         if (ZSTD_isError(size))
             return false;
@@ -128,7 +128,8 @@ static imk_status find_times(imki_ros_log *log, imk_error *error)
 imk_status imki_ros_open(imki_ros_log *log, imk_error *error)
 {
     imk_status status = IMK_OK;
-    if (log->packed && !(log->unpacked = malloc(IMKI_ROS_MESSAGE_MAX)))
+    if (log->packed &&
+        (!(log->unpacked = malloc(IMKI_ROS_MESSAGE_MAX)) || !(log->unpacker = ZSTD_createDCtx())))
         return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     log->looking = true;
     if (log->indexed)
@@ -211,4 +212,5 @@ void imki_ros_close(imki_ros_log *log)
     free(log->topics);
     free(log->channels);
     free(log->unpacked);
+    ZSTD_freeDCtx(log->unpacker);
 }

@@ -17,28 +17,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char by_time[] = "SELECT topic_id, timestamp, data FROM messages INDEXED BY "
-                              "timestamp_idx WHERE timestamp >= ?1 ORDER BY timestamp";
+/* With the topics to be read: of the others not even the data are fetched. */
+static const char by_time[] =
+    "SELECT topic_id, timestamp, data FROM messages INDEXED BY timestamp_idx WHERE timestamp >= ?1 "
+    "%s ORDER BY timestamp";
 static const char by_number[] =
-    "SELECT topic_id, timestamp, data, rowid FROM messages WHERE rowid >= ?1 ORDER BY rowid";
+    "SELECT topic_id, timestamp, data, rowid FROM messages WHERE rowid >= ?1 %s ORDER BY rowid";
 static const char *const ends[2][2] = {
     {"SELECT rowid FROM messages ORDER BY rowid LIMIT 1",
      "SELECT rowid FROM messages ORDER BY rowid DESC LIMIT 1"},
     {"SELECT timestamp FROM messages INDEXED BY timestamp_idx ORDER BY timestamp LIMIT 1",
      "SELECT timestamp FROM messages INDEXED BY timestamp_idx ORDER BY timestamp DESC LIMIT 1"}};
-
-/* The only number that a query gives. */
-static bool ask(sqlite3 *handle, const char *text, int64_t *number)
-{
-    sqlite3_stmt *query = NULL;
-    const bool found = sqlite3_prepare_v2(handle, text, -1, &query, NULL) == SQLITE_OK &&
-                       sqlite3_step(query) == SQLITE_ROW &&
-                       sqlite3_column_type(query, 0) == SQLITE_INTEGER;
-    if (found)
-        *number = sqlite3_column_int64(query, 0);
-    sqlite3_finalize(query);
-    return found;
-}
 
 /* A piece of text that is valid until the next step. */
 static imki_log_piece text_at(sqlite3_stmt *query, int column)
@@ -55,13 +44,48 @@ static bool is_cut(const imki_rosbag2_db *db)
 
 static imk_status refuse(const imki_rosbag2_db *db, imk_error *error)
 {
-    const imk_status status = imki_sqlite_refuse(db->handle, error);
+    const imk_status status = imki_sqlite_refuse(db->handle, &db->bytes, error);
     if (status != IMK_ERROR_FORMAT || !is_cut(db))
         return status;
     char found[128];
     snprintf(found, sizeof found, "the bag is cut short: %llu of its %llu bytes are there",
              (unsigned long long)db->bytes.size, (unsigned long long)db->bytes.claimed);
     return imk_error_set(error, status, "", found, "copy the file again");
+}
+
+/* The only number that a query gives; *found is false if it gives none, or cannot be asked of this
+ * database. @return IMK_ERROR_MEMORY, IMK_ERROR_READ */
+static imk_status ask(imki_rosbag2_db *db, const char *text, bool *found, int64_t *number,
+                      imk_error *error)
+{
+    sqlite3_stmt *query = NULL;
+    int result = sqlite3_prepare_v2(db->handle, text, -1, &query, NULL);
+    if (result == SQLITE_OK)
+        result = sqlite3_step(query);
+    *found = result == SQLITE_ROW && sqlite3_column_type(query, 0) == SQLITE_INTEGER;
+    if (*found)
+        *number = sqlite3_column_int64(query, 0);
+    const bool failed = result != SQLITE_ROW && result != SQLITE_DONE &&
+                        imki_sqlite_is_system(db->handle, &db->bytes);
+    const imk_status status = failed ? refuse(db, error) : IMK_OK;
+    sqlite3_finalize(query);
+    return status;
+}
+
+/* First and last time, or number. */
+static imk_status find_ends(imki_rosbag2_db *db, imk_error *error)
+{
+    bool found[2] = {false, false};
+    imk_status status = IMK_OK;
+    db->by_time = !is_cut(db);
+    for (int pass = 0; pass < 2 && status == IMK_OK && !found[1]; pass++) {
+        db->by_time = db->by_time && pass == 0;
+        status = ask(db, ends[db->by_time][0], &found[0], &db->first, error);
+        db->last = db->first;
+        if (status == IMK_OK && found[0])
+            status = ask(db, ends[db->by_time][1], &found[1], &db->last, error);
+    }
+    return status;
 }
 
 /* ---- opening ---- */
@@ -146,12 +170,7 @@ imk_status imki_rosbag2_db_open(imki_rosbag2 *bag, imk_error *error)
                                    "the SQLite database has no tables \"topics\" and \"messages\"",
                                    "a bag of ROS 2")
                    : refuse(db, error);
-    db->by_time = !is_cut(db) && ask(db->handle, ends[1][0], &db->first) &&
-                  ask(db->handle, ends[1][1], &db->last);
-    if (!db->by_time &&
-        (!ask(db->handle, ends[0][0], &db->first) || !ask(db->handle, ends[0][1], &db->last)))
-        db->last = db->first;
-    return IMK_OK;
+    return find_ends(db, error);
 }
 
 imk_status imki_rosbag2_db_topics(imki_rosbag2 *bag, imk_error *error)
@@ -199,14 +218,37 @@ char *imki_rosbag2_db_metadata(const imki_rosbag2_db *db)
 
 /* ---- reading ---- */
 
+/* "AND topic_id IN (2, 5)" with the topics that can be read; "" if they are too many to be listed.
+ */
+static void list_topics(const imki_rosbag2 *bag, size_t size, char *text)
+{
+    const imki_ros_log *log = &bag->log;
+    size_t used = (size_t)snprintf(text, size, "AND topic_id IN (");
+    bool any = false;
+    for (size_t i = 0; i < log->channel_count; i++) {
+        if (log->topics[log->channels[i].topic].encoding == IMKI_ROS_OTHER)
+            continue;
+        if (size - used < 16) {
+            text[0] = '\0';
+            return;
+        }
+        used += (size_t)snprintf(text + used, size - used, "%s%u", any ? ", " : "",
+                                 (unsigned)log->channels[i].id);
+        any = true;
+    }
+    snprintf(text + used, size - used, ")");
+}
+
 imk_status imki_rosbag2_db_start(imki_rosbag2 *bag, double fraction, imk_error *error)
 {
     imki_rosbag2_db *db = &bag->db;
     sqlite3_finalize(db->query);
     db->query = NULL;
     db->begun = db->over = false;
-    if (sqlite3_prepare_v2(db->handle, db->by_time ? by_time : by_number, -1, &db->query, NULL) !=
-        SQLITE_OK)
+    char chosen[512], text[sizeof by_time + sizeof by_number + sizeof chosen];
+    list_topics(bag, sizeof chosen, chosen);
+    snprintf(text, sizeof text, db->by_time ? by_time : by_number, chosen);
+    if (sqlite3_prepare_v2(db->handle, text, -1, &db->query, NULL) != SQLITE_OK)
         return refuse(db, error);
     const double length = (double)db->last - (double)db->first;
     int64_t from = INT64_MIN;
@@ -229,7 +271,8 @@ imk_status imki_rosbag2_db_next(imki_rosbag2 *bag, imki_ros_message *message, bo
         const int result = sqlite3_step(db->query);
         if (result != SQLITE_ROW) {
             db->over = true; /* another step would begin anew */
-            if (result != SQLITE_DONE && !db->begun)
+            if (result != SQLITE_DONE &&
+                (!db->begun || imki_sqlite_is_system(db->handle, &db->bytes)))
                 return refuse(db, error);
             log->reader->cut_short |= result != SQLITE_DONE || is_cut(db);
             break;
@@ -242,7 +285,7 @@ imk_status imki_rosbag2_db_next(imki_rosbag2 *bag, imki_ros_message *message, bo
         const imki_ros_topic *topic =
             id >= 0 && id <= UINT32_MAX ? imki_ros_topic_of(log, message->channel) : NULL;
         if (!topic || topic->encoding == IMKI_ROS_OTHER)
-            continue; /* images are not even fetched */
+            continue;
         message->data = sqlite3_column_blob(db->query, 2);
         message->size = message->data ? (size_t)sqlite3_column_bytes(db->query, 2) : 0;
         *found = true;

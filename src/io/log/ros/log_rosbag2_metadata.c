@@ -21,12 +21,9 @@
 
 imki_ros_encoding imki_rosbag2_encoding(imki_log_piece type, imki_log_piece serialisation)
 {
-    static const char imu[] = "sensor_msgs/msg/Imu";
-    const bool cdr =
-        serialisation.end - serialisation.begin == 3 && memcmp(serialisation.begin, "cdr", 3) == 0;
-    const bool is_imu =
-        type.end - type.begin == sizeof imu - 1 && memcmp(type.begin, imu, sizeof imu - 1) == 0;
-    return cdr && is_imu ? IMKI_ROS_CDR : IMKI_ROS_OTHER;
+    return imki_piece_is(serialisation, "cdr") && imki_piece_is(type, "sensor_msgs/msg/Imu")
+               ? IMKI_ROS_CDR
+               : IMKI_ROS_OTHER;
 }
 
 /* Text of a scalar of a mapping; "" where there is none. */

@@ -5,10 +5,10 @@
 #define _POSIX_C_SOURCE 200809L
 #include "log_sqlite_internal.h"
 
+#include "io/file/system_error_internal.h"
 #include "ros_bytes_internal.h"
 
 #include <errno.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -17,11 +17,11 @@ enum { HEAD = 100, NAME_SIZE = 64, VALUE_MAX = 64 << 20 };
 
 typedef struct source {
     sqlite3_file base;
-    const imki_sqlite_bytes *bytes;
+    imki_sqlite_bytes *bytes;
 } source;
 
 /* Up to `size` bytes. @return how many; -1: the system refuses */
-static ssize_t read_bytes(const imki_sqlite_bytes *bytes, void *to, size_t size, uint64_t place)
+static ssize_t read_bytes(imki_sqlite_bytes *bytes, void *to, size_t size, uint64_t place)
 {
     if (place >= bytes->size)
         return 0;
@@ -35,8 +35,10 @@ static ssize_t read_bytes(const imki_sqlite_bytes *bytes, void *to, size_t size,
     while (done < size) {
         const ssize_t got =
             pread(bytes->file, (char *)to + done, size - done, (off_t)(place + done));
-        if (got < 0 && errno != EINTR)
+        if (got < 0 && errno != EINTR) {
+            bytes->system_error = errno;
             return -1;
+        }
         if (got == 0)
             break;
         done += got > 0 ? (size_t)got : 0;
@@ -52,7 +54,7 @@ static int file_close(sqlite3_file *file)
 
 static int file_read(sqlite3_file *file, void *to, int size, sqlite3_int64 place)
 {
-    const imki_sqlite_bytes *bytes = ((const source *)file)->bytes;
+    imki_sqlite_bytes *bytes = ((source *)file)->bytes;
     const ssize_t got = read_bytes(bytes, to, (size_t)size, (uint64_t)place);
     /* Zeros in the place of a page that is missing would be taken for its content. */
     if (got < 0 || (got < size && bytes->claimed > bytes->size))
@@ -200,7 +202,8 @@ static int vfs_error(sqlite3_vfs *vfs, int size, char *text)
     return 0;
 }
 
-static void register_vfs(void)
+/* @return false: no memory */
+static bool register_vfs(void)
 {
     static sqlite3_vfs vfs = {.iVersion = 1,
                               .szOsFile = sizeof(source),
@@ -214,7 +217,7 @@ static void register_vfs(void)
                               .xSleep = vfs_sleep,
                               .xCurrentTime = vfs_time,
                               .xGetLastError = vfs_error};
-    sqlite3_vfs_register(&vfs, 0);
+    return sqlite3_vfs_find(vfs.zName) || sqlite3_vfs_register(&vfs, 0) == SQLITE_OK;
 }
 
 /* Columns of tables are read, and nothing else is done. */
@@ -225,11 +228,24 @@ static int authorise(void *context, int action, const char *a, const char *b, co
     return action == SQLITE_SELECT || action == SQLITE_READ ? SQLITE_OK : SQLITE_DENY;
 }
 
-imk_status imki_sqlite_refuse(sqlite3 *handle, imk_error *error)
+static bool lacks_memory(sqlite3 *handle)
+{
+    return !handle || sqlite3_errcode(handle) == SQLITE_NOMEM ||
+           sqlite3_extended_errcode(handle) == SQLITE_IOERR_NOMEM;
+}
+
+bool imki_sqlite_is_system(sqlite3 *handle, const imki_sqlite_bytes *bytes)
+{
+    return lacks_memory(handle) || bytes->system_error != 0;
+}
+
+imk_status imki_sqlite_refuse(sqlite3 *handle, const imki_sqlite_bytes *bytes, imk_error *error)
 {
     char found[160];
-    if (!handle || sqlite3_errcode(handle) == SQLITE_NOMEM)
+    if (lacks_memory(handle))
         return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    if (bytes->system_error != 0)
+        return imki_system_error(error, IMK_ERROR_READ, "", bytes->system_error);
     snprintf(found, sizeof found, "SQLite cannot read the file: %s", sqlite3_errmsg(handle));
     return imk_error_set(error, IMK_ERROR_FORMAT, "", found,
                          "copy the file again, or save what is whole: sqlite3 OLD.db3 .recover | "
@@ -253,13 +269,13 @@ static void find_claim(imki_sqlite_bytes *bytes)
 
 imk_status imki_sqlite_open(imki_sqlite_bytes *bytes, sqlite3 **handle, imk_error *error)
 {
-    static pthread_once_t once = PTHREAD_ONCE_INIT;
     char name[NAME_SIZE];
-    pthread_once(&once, register_vfs);
+    if (!register_vfs())
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     find_claim(bytes);
     snprintf(name, sizeof name, "%p", (void *)bytes);
     if (sqlite3_open_v2(name, handle, SQLITE_OPEN_READONLY, "imukit") != SQLITE_OK)
-        return imki_sqlite_refuse(*handle, error);
+        return imki_sqlite_refuse(*handle, bytes, error);
     sqlite3_db_config(*handle, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     sqlite3_db_config(*handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_limit(*handle, SQLITE_LIMIT_LENGTH, VALUE_MAX);
@@ -267,7 +283,7 @@ imk_status imki_sqlite_open(imki_sqlite_bytes *bytes, sqlite3 **handle, imk_erro
     sqlite3_limit(*handle, SQLITE_LIMIT_WORKER_THREADS, 0);
     if (sqlite3_exec(*handle, "PRAGMA cell_size_check=ON; PRAGMA temp_store=MEMORY", NULL, NULL,
                      NULL) != SQLITE_OK)
-        return imki_sqlite_refuse(*handle, error);
+        return imki_sqlite_refuse(*handle, bytes, error);
     sqlite3_set_authorizer(*handle, authorise, NULL);
     return IMK_OK;
 }

@@ -13,6 +13,7 @@ typedef struct imki_sqlite_bytes {
     int file; /* -1: memory */
     const char *memory;
     uint64_t size;
+    int system_error; /* errno of a read that failed; 0: none has */
     uint64_t claimed; /* size that the head of the database says, or `size` if that is larger */
 } imki_sqlite_bytes;
 
@@ -23,8 +24,10 @@ typedef struct imki_sqlite_bytes {
  * @return IMK_ERROR_FORMAT, IMK_ERROR_MEMORY */
 imk_status imki_sqlite_open(imki_sqlite_bytes *bytes, sqlite3 **handle, imk_error *error);
 
-/* Why the last call failed. @return IMK_ERROR_MEMORY, else IMK_ERROR_FORMAT */
-imk_status imki_sqlite_refuse(sqlite3 *handle, imk_error *error);
+/* Did the last call fail because of the system, not of what the database holds? */
+bool imki_sqlite_is_system(sqlite3 *handle, const imki_sqlite_bytes *bytes);
+/* Why the last call failed. @return IMK_ERROR_MEMORY, IMK_ERROR_READ, else IMK_ERROR_FORMAT */
+imk_status imki_sqlite_refuse(sqlite3 *handle, const imki_sqlite_bytes *bytes, imk_error *error);
 
 /* Is this a table, and no view or the like? */
 bool imki_sqlite_has_table(sqlite3 *handle, const char *name);
