@@ -48,6 +48,11 @@ static inline void bags_check(const uint8_t *data, size_t size, const char *form
     if (status != IMK_OK)
         return;
     bags_read(reader, 1 + choice / 4 % 64);
+    if (choice % 3 == 0) {
+        const imk_record_source source = imk_log_source(reader);
+        require(source.rewind(source.context, NULL) == IMK_OK);
+        bags_read(reader, 64);
+    }
     error = (imk_error){.status = IMK_OK};
     status = imk_log_seek(reader, (double)(choice % 5) / 4.0, &error);
     require_told(status, &error);

@@ -73,6 +73,15 @@ static void test_files(void **state)
         assert_int_equal(t.findings.damaged, 0);
         assert_false(t.findings.cut_short || t.findings.received);
         CHECK_RELATIVE(t.findings.time_origin, (double)start / 1e9, 1e-15);
+        /* Again from the first row, and from another place. */
+        const imk_record_source source = imk_log_source(reader);
+        CHECK_OK(source.rewind(source.context, &error));
+        CHECK_OK(bag_read(reader, 7, &t, &error));
+        assert_int_equal(t.rows, SAMPLES);
+        check_rows(&t, 0, 1);
+        CHECK_OK(imk_log_seek(reader, 0.9, &error));
+        CHECK_OK(bag_read(reader, 7, &t, &error));
+        check_rows(&t, SAMPLES - t.rows, 1);
         imk_log_close(reader);
     }
 }

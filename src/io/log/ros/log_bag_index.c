@@ -100,7 +100,7 @@ static imk_status walk(imki_bag *bag, uint64_t target, uint64_t *place, imk_erro
 
 imk_status imki_bag_seek(imk_log_reader *reader, double fraction, imk_error *error)
 {
-    imki_bag *bag = reader->state;
+    imki_bag *bag = (imki_bag *)imki_ros_log_of(reader);
     if (!imki_ros_can_seek(&bag->log))
         return imki_log_text_seek(&reader->text, 0, error);
     const uint64_t target = (uint64_t)(fraction * (double)imki_ros_size(&bag->log));

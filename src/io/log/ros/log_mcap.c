@@ -42,7 +42,7 @@ static imk_status open_mcap(imk_log_reader *reader, imk_error *error)
 
 static imk_status seek(imk_log_reader *reader, double fraction, imk_error *error)
 {
-    return imki_mcap_go(&((state *)reader->state)->mcap, fraction, error);
+    return imki_mcap_go(&((state *)imki_ros_log_of(reader))->mcap, fraction, error);
 }
 
 static void close_mcap(imk_log_reader *reader)

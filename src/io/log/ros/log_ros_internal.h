@@ -53,8 +53,10 @@ typedef struct imki_ros_container {
 /* The beginning of the state of each of these formats. */
 struct imki_ros_log {
     const imki_ros_container *container;
+    /* Of the present call: a reader that is rewound is another one. */
     imk_log_reader *reader;
     imki_log_text *text; /* what a container of bytes reads */
+    bool apart;          /* which is not that of the reader */
     imki_ros_topic *topics;
     size_t topic_count, topic_room;
     imki_ros_channel *channels; /* by id */
@@ -108,6 +110,8 @@ void imki_ros_topic_uncount(imki_ros_log *log);
 
 /* ---- log_ros_rows.c -------------------------------------------------------------------------- */
 
+/* The state of a reader, at the beginning of each call. */
+imki_ros_log *imki_ros_log_of(imk_log_reader *reader);
 /* As imki_log_codec.open, behind what the container opens itself, and .read. The state of the
  * reader begins with an imki_ros_log. */
 imk_status imki_ros_open(imki_ros_log *log, imk_error *error);

@@ -125,6 +125,15 @@ static imk_status find_times(imki_ros_log *log, imk_error *error)
                                "messages sensor_msgs/Imu", error);
 }
 
+imki_ros_log *imki_ros_log_of(imk_log_reader *reader)
+{
+    imki_ros_log *log = reader->state;
+    log->reader = reader;
+    if (!log->apart)
+        log->text = &reader->text;
+    return log;
+}
+
 imk_status imki_ros_open(imki_ros_log *log, imk_error *error)
 {
     imk_status status = IMK_OK;
@@ -178,7 +187,7 @@ static void put_row(imki_ros_log *log, const imki_imu *imu, int64_t received, do
 imk_status imki_ros_read(imk_log_reader *reader, size_t max_rows, double *const *out, size_t *rows,
                          imk_error *error)
 {
-    imki_ros_log *log = reader->state;
+    imki_ros_log *log = imki_ros_log_of(reader);
     imki_ros_message message;
     imki_imu imu;
     bool found = true;

@@ -139,6 +139,7 @@ static imk_status open_rosbag2(imk_log_reader *reader, imk_error *error)
     imk_status status;
     if (!reader->text.input) {
         bag->log.text = &bag->part;
+        bag->log.apart = true;
         status = open_folder(bag, reader->path, error);
     } else {
         status = open_database(bag, error);
@@ -148,7 +149,7 @@ static imk_status open_rosbag2(imk_log_reader *reader, imk_error *error)
 
 static imk_status seek(imk_log_reader *reader, double fraction, imk_error *error)
 {
-    imki_rosbag2 *bag = reader->state;
+    imki_rosbag2 *bag = (imki_rosbag2 *)imki_ros_log_of(reader);
     double within = fraction;
     imk_status status = IMK_OK;
     if (bag->files) {
