@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { METADATA_MAX = 1 << 20 };
+enum { METADATA_MAX = IMKI_ROSBAG2_METADATA * (1 << 20) };
 
 /* ---- one file ---- */
 

@@ -245,6 +245,7 @@ imk_status imki_rosbag2_db_start(imki_rosbag2 *bag, double fraction, imk_error *
     sqlite3_finalize(db->query);
     db->query = NULL;
     db->begun = db->over = false;
+    db->bytes.steps = 0;
     char chosen[512], text[sizeof by_time + sizeof by_number + sizeof chosen];
     list_topics(bag, sizeof chosen, chosen);
     snprintf(text, sizeof text, db->by_time ? by_time : by_number, chosen);

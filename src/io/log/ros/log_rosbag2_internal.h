@@ -7,7 +7,8 @@
 #include "log_mcap_internal.h"
 #include "log_sqlite_internal.h"
 
-enum { IMKI_ROSBAG2_FILES_MAX = 10000 };
+/* Times the limits of other documents: each of some thousand topics may have forty values. */
+enum { IMKI_ROSBAG2_METADATA = 8 };
 
 /* The database that is being read. */
 typedef struct imki_rosbag2_db {

@@ -159,7 +159,8 @@ imk_status imki_rosbag2_metadata(imki_rosbag2 *bag, const char *folder, const ch
 {
     static const char head[] = "rosbag2_bagfile_information";
     imk_document *document;
-    imk_status status = imki_document_parse_as("metadata", head, text, size, &document, error);
+    imk_status status = imki_document_parse_large("metadata", head, IMKI_ROSBAG2_METADATA, text,
+                                                  size, &document, error);
     if (status != IMK_OK)
         return status;
     const int root = value_of(document, 0, head, IMKI_NODE_MAPPING);

@@ -228,6 +228,13 @@ static int authorise(void *context, int action, const char *a, const char *b, co
     return action == SQLITE_SELECT || action == SQLITE_READ ? SQLITE_OK : SQLITE_DENY;
 }
 
+/* A row, of 8 bytes at least, takes some twenty steps. */
+static int count_steps(void *context)
+{
+    imki_sqlite_bytes *bytes = context;
+    return ++bytes->steps > 10000 + bytes->size / 128;
+}
+
 static bool lacks_memory(sqlite3 *handle)
 {
     return !handle || sqlite3_errcode(handle) == SQLITE_NOMEM ||
@@ -284,6 +291,7 @@ imk_status imki_sqlite_open(imki_sqlite_bytes *bytes, sqlite3 **handle, imk_erro
     if (sqlite3_exec(*handle, "PRAGMA cell_size_check=ON; PRAGMA temp_store=MEMORY", NULL, NULL,
                      NULL) != SQLITE_OK)
         return imki_sqlite_refuse(*handle, bytes, error);
+    sqlite3_progress_handler(*handle, 1000, count_steps, bytes);
     sqlite3_set_authorizer(*handle, authorise, NULL);
     return IMK_OK;
 }

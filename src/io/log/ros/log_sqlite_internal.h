@@ -14,10 +14,14 @@ typedef struct imki_sqlite_bytes {
     const char *memory;
     uint64_t size;
     int system_error; /* errno of a read that failed; 0: none has */
+    uint64_t steps;   /* of the library's machine since this was set to 0, in thousands */
     uint64_t claimed; /* size that the head of the database says, or `size` if that is larger */
 } imki_sqlite_bytes;
 
-/* Open a database, which reads `bytes` until it is closed. Only plain tables can be read: what
+/* A query takes no more steps than all pages of the file are worth: tables whose pages lead to the
+ * same pages again and again have no end. It then fails as one of a damaged database does.
+ *
+ * Open a database, which reads `bytes` until it is closed. Only plain tables can be read: what
  * would run functions, other programs' code or without end is refused by the library. A file that
  * is shorter than its head says is read as far as it goes; what is missing is damaged.
  * @param handle  to be closed by sqlite3_close(), also on error; may be NULL
