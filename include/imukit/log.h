@@ -207,6 +207,8 @@ typedef struct imk_log_writer imk_log_writer;
  *  - A path ending in .npy: float64 matrix, rows x columns, C order, little-endian, values in the
  *    units of the columns chosen as for IMK_LOG_SHORTEST; `name [unit]` of each column goes to a
  *    line of FILE.npy.columns, which appears with it.
+ *  - .bag, .mcap, .db3: messages sensor_msgs/Imu of a time and three gyros, three accelerometers or
+ *    both; a .bag and a .db3 are plain files.
  *  - Any other path: CSV text, commas, line feeds, `name [unit]` in the header (`name` for a unit
  *    without text). NaN and infinities are written nan, inf, -inf.
  *  - A path that ends in .gz or .zst after that is compressed; "-" and NULL are CSV to standard
@@ -218,8 +220,9 @@ typedef struct imk_log_writer imk_log_writer;
  *  @param decimals   per column (0 … 17), with IMK_LOG_FIXED; else NULL
  *  @param row_count  number of rows if known, else 0. Only a .npy that is not a plain file (a pipe,
  *                    compressed) needs it, and then exactly.
- *  @return IMK_ERROR_OPEN, IMK_ERROR_COLUMN (a name), IMK_ERROR_ARGUMENT (a unit or decimals),
- *          IMK_ERROR_UNSUPPORTED (a .npy that needs row_count), IMK_ERROR_MEMORY */
+ *  @return IMK_ERROR_OPEN, IMK_ERROR_COLUMN (a name; a column that the format does not hold),
+ *          IMK_ERROR_ARGUMENT (a unit or decimals), IMK_ERROR_UNSUPPORTED (a format that needs a
+ *          plain file; a .npy that needs row_count), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_create(const char *path, size_t column_count,
                                   const imk_log_column *columns, imk_log_precision precision,
                                   const int *decimals, uint64_t row_count, imk_log_writer **writer,
