@@ -105,13 +105,16 @@ if(IMUKIT_IO)
   pkg_check_modules(yaml REQUIRED IMPORTED_TARGET yaml-0.1)
   pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
   pkg_check_modules(expat REQUIRED IMPORTED_TARGET expat)
+  pkg_check_modules(lz4 REQUIRED IMPORTED_TARGET liblz4)
+  pkg_check_modules(sqlite REQUIRED IMPORTED_TARGET sqlite3)
+  find_package(BZip2 REQUIRED)
   # Its serial form, where that has a name of its own.
   pkg_search_module(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial>=1.10.2 hdf5>=1.10.2)
   find_package(ZLIB REQUIRED)
   find_package(Threads REQUIRED)
   imukit_library(imukit-io SOURCES ${io_sources} OURS imukit-physics imukit
                  PRIVATE PkgConfig::yaml PkgConfig::zstd PkgConfig::expat PkgConfig::hdf5
-                         ZLIB::ZLIB Threads::Threads)
+                         PkgConfig::lz4 PkgConfig::sqlite BZip2::BZip2 ZLIB::ZLIB Threads::Threads)
 endif()
 
 # The names users of the installed package see, valid within this tree as well.

@@ -220,6 +220,8 @@ typedef struct imk_log_writer imk_log_writer;
  *    line of FILE.npy.columns, which appears with it.
  *  - .npz, .mat (version 5), .h5 and .hdf5: a vector of float64 for each column, with its unit. The
  *    columns are kept in a temporary file in TMPDIR until the log is finished.
+ *  - .bag, .mcap, .db3: messages sensor_msgs/Imu of a time and three gyros, three accelerometers or
+ *    both; a .bag and a .db3 are plain files.
  *  - .csv, .txt, no ending, "-" and NULL (standard output): CSV text, commas, line feeds, `name
  *    [unit]` in the header (`name` for a unit without text). NaN and infinities are written nan,
  *    inf, -inf.
@@ -232,9 +234,10 @@ typedef struct imk_log_writer imk_log_writer;
  *  @param decimals   per column (0 … 17), with IMK_LOG_FIXED; else NULL
  *  @param row_count  number of rows if known, else 0. Only a .npy that is not a plain file (a pipe,
  *                    compressed) needs it, and then exactly.
- *  @return IMK_ERROR_OPEN, IMK_ERROR_COLUMN (a name), IMK_ERROR_ARGUMENT (a unit or decimals),
- *          IMK_ERROR_UNSUPPORTED (the ending; a .npy that needs row_count; more rows than a .mat
- *          holds), IMK_ERROR_WRITE (no temporary file), IMK_ERROR_MEMORY */
+ *  @return IMK_ERROR_OPEN, IMK_ERROR_COLUMN (a name; a column that the format does not hold),
+ *          IMK_ERROR_ARGUMENT (a unit or decimals), IMK_ERROR_UNSUPPORTED (the ending; a format that
+ *          needs a plain file; a .npy that needs row_count; more rows than a .mat holds),
+ *          IMK_ERROR_WRITE (no temporary file), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_create(const char *path, size_t column_count,
                                   const imk_log_column *columns, imk_log_precision precision,
                                   const int *decimals, uint64_t row_count, imk_log_writer **writer,

@@ -100,6 +100,7 @@ typedef struct imk_log_findings {
     size_t headers, first_header;        /**< lines between the rows of a text that are its header
                                             once more; rows before the first */
     bool cut_short; /**< the file ends within a row, message or block, which is left out */
+    bool received;  /**< the times are those of recording: no message says when it was measured */
 } imk_log_findings;
 
 /** Where the rows of a record come from. A function that the source does not offer is NULL. */

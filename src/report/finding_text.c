@@ -86,6 +86,8 @@ static const struct message {
     {"cut_short", "the file ends in the middle of a row, message or block, or its last line has no "
                   "end and may be cut; what is whole, {0} row{0s}, is used; if the file is a copy, "
                   "copy it again"},
+    {"received", "the stamps of the messages are all 0; the times at which they were recorded are "
+                 "used, which have the jitter of their way"},
     {"unordered", UNORDERED},
     {"stamps:unordered", UNORDERED},
     {"missing",

@@ -114,3 +114,10 @@ for name in kalibr.yaml gazebo.sdf matlab.json px4.params ardupilot.param vins.y
 done
 awk 'BEGIN { print "tau [s],gyro_x [deg/h]"; for (t = 0.1; t < 500; t *= 2) print t "," sqrt(18 * 18 / t + 1) }' >curve.csv
 awk 'BEGIN { print "time [s],latitude [deg],longitude [deg],height [m],roll [deg],pitch [deg],yaw [deg]"; for (t = 0; t <= 4; t++) print t ",48,11,500," t "," 2 * t "," 3 * t }' >poses.csv
+
+for ending in bag mcap db3; do
+    $IMUKIT convert rest.csv "rest.$ending"
+done
+for name in lz4.bag bz2.bag two; do
+    cp -R "$SOURCE/tests/fixtures/bags/$name" "$name"
+done

@@ -193,3 +193,10 @@ imk_status imki_copy_open(const struct stat *about, bool kept, int *file, imk_er
     pthread_mutex_unlock(&mutex);
     return status;
 }
+
+imk_status imki_nameless_write(int file, const char *bytes, size_t size, const char *path,
+                               imk_error *error)
+{
+    const int number = file < 0 ? errno : write_all(file, bytes, size);
+    return number == 0 ? IMK_OK : refuse(path, number, error);
+}

@@ -23,4 +23,9 @@ imk_status imki_copy_make(const struct stat *about, int file, const char *path,
  * @return why the copy could not be made when it was tried */
 imk_status imki_copy_open(const struct stat *about, bool kept, int *file, imk_error *error);
 
+/* Add bytes to it. @param file  of imki_open_nameless(), just so: errno tells why there is none
+ * @return IMK_ERROR_WRITE, with `path`, of what is copied, in error.field */
+imk_status imki_nameless_write(int file, const char *bytes, size_t size, const char *path,
+                               imk_error *error);
+
 #endif

@@ -214,6 +214,11 @@ bool imki_output_file_can_replace(const imk_output_file *file)
     return file->encoding == ENCODING_PLAIN && file->target.temporary != NULL;
 }
 
+const char *imki_output_file_temporary(const imk_output_file *file)
+{
+    return file->target.temporary;
+}
+
 imk_status imki_output_file_replace(imk_output_file *file, uint64_t offset, const void *bytes,
                                     size_t size)
 {

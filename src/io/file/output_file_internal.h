@@ -18,6 +18,10 @@ bool imki_output_file_can_replace(const imk_output_file *file);
 imk_status imki_output_file_replace(imk_output_file *file, uint64_t offset, const void *bytes,
                                     size_t size);
 
+/* The file that holds the bytes until it gets its name, for a library that writes it itself; NULL
+ * if there is none. */
+const char *imki_output_file_temporary(const imk_output_file *file);
+
 /* The part of commit that can well fail: flush, end the compression, sync to the disk. Commit then
  * only renames, so that several files can be prepared first and appear together. On error the file
  * is abandoned and freed. */

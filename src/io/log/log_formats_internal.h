@@ -22,7 +22,13 @@
     ROW(sbg, "sbg", "sbgECom log", "", NULL, NULL, false)                                          \
     ROW(ubx, "ubx", "UBX log", ".ubx", NULL, NULL, false)                                          \
     ROW(vectornav, "vectornav", "VectorNav log", "", NULL, NULL, false)                            \
-    ROW(described, "binary", "binary records (--binary)", "", NULL, NULL, false)
+    ROW(described, "binary", "binary records (--binary)", "", NULL, NULL, false)                   \
+    ROW(bag, "bag", "ROS 1 bag", ".bag", "#ROSBAG V2", NULL, true)                                 \
+    ROW(mcap, "mcap", "MCAP", ".mcap",                                                             \
+        "\x89"                                                                                     \
+        "MCAP0\r\n",                                                                               \
+        NULL, true)                                                                                \
+    ROW(rosbag2, "rosbag2", "rosbag2", ".db3", "SQLite format 3", NULL, true)
 
 /* What a format sees of a log that is written. */
 typedef struct imki_log_output {

@@ -198,13 +198,16 @@ imk_status imk_log_streams(const char *path, const imk_log_settings *settings, s
     const imk_log_settings usual = imk_log_default();
     imk_log_settings any = settings ? *settings : usual;
     imk_log_reader *made;
+    imk_error reason;
     any.topic = NULL;
     any.instance = 0;
-    imk_status status = open_path(path, &any, &made, error);
+    imk_status status = open_path(path, &any, &made, &reason);
     /* That none is chosen, or none can be read, is no error here. */
     if (made && made->stream_count > 0 &&
         (status == IMK_ERROR_NAME_UNKNOWN || status == IMK_ERROR_EMPTY))
         status = IMK_OK;
+    if (status != IMK_OK && error)
+        *error = reason;
     if (status == IMK_OK) {
         *count = imk_log_stream_list(made, most, stream);
         if (format)
@@ -453,6 +456,7 @@ imk_log_findings imk_log_findings_get(const imk_log_reader *reader)
     found.headers = reader->headers;
     found.first_header = reader->first_header;
     found.cut_short = reader->cut_short;
+    found.received = reader->received;
     if (reader->layout.time_column < 0 && reader->rows > 0)
         found.last_time = (double)(reader->rows - 1) / reader->rate;
     return found;

@@ -136,6 +136,7 @@ struct imk_log_reader {
     size_t damaged_line, damaged_column; /* of the first, in a text */
     size_t headers, first_header;        /* of a text, once more between its rows */
     bool cut_short;
+    bool received;      /* the times are those of recording, as the stamps are all 0 */
     double rate;        /* [Hz]; 0: from the times */
     double time_origin; /* in the unit of the file */
     double last_time;   /* [s] */

@@ -15,7 +15,7 @@ typedef struct builder {
     const char *what; /* "model" */
     size_t *offset;   /* byte of each character: libyaml's marks count characters */
     size_t character_count;
-    int capacity;
+    int capacity, nodes_max;
     int open[IMKI_DOCUMENT_DEPTH_MAX];
     int depth;
 } builder;
@@ -96,9 +96,11 @@ static imk_status check_key(builder *b, int key, yaml_mark_t mark)
 static imk_status add_node(builder *b, const yaml_event_t *event, imki_node_kind kind, int *index)
 {
     imk_document *document = b->document;
-    if (document->node_count == IMKI_DOCUMENT_NODES_MAX)
-        return kind_error(b, event->start_mark, "too many values", "a ",
-                          " file of at most 10000 values");
+    if (document->node_count == b->nodes_max) {
+        char after[48];
+        snprintf(after, sizeof after, " file of at most %d values", b->nodes_max);
+        return kind_error(b, event->start_mark, "too many values", "a ", after);
+    }
     if (document->node_count == b->capacity) {
         int capacity = b->capacity ? 2 * b->capacity : 64;
         imki_node *grown = realloc(document->node, (size_t)capacity * sizeof *grown);
@@ -299,11 +301,19 @@ static imk_status check_root(const builder *b, const char *head)
 imk_status imki_document_parse_as(const char *what, const char *head, const char *text, size_t size,
                                   imk_document **document, imk_error *error)
 {
-    char expected[64];
+    return imki_document_parse_large(what, head, 1, text, size, document, error);
+}
+
+imk_status imki_document_parse_large(const char *what, const char *head, int times,
+                                     const char *text, size_t size, imk_document **document,
+                                     imk_error *error)
+{
+    char found[64], expected[64];
     snprintf(expected, sizeof expected, "a %s file", what);
-    if (size > IMKI_DOCUMENT_SIZE_MAX)
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "the file is longer than 1 MiB",
-                             expected);
+    if (size > (size_t)times * IMKI_DOCUMENT_SIZE_MAX) {
+        snprintf(found, sizeof found, "the file is longer than %d MiB", times);
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", found, expected);
+    }
     imk_document *made = calloc(1, sizeof *made);
     if (made)
         made->text = malloc(size + 1);
@@ -315,7 +325,10 @@ imk_status imki_document_parse_as(const char *what, const char *head, const char
         memcpy(made->text, text, size);
     made->text[size] = '\0';
     made->size = size;
-    builder b = {.document = made, .error = error, .what = what};
+    builder b = {.document = made,
+                 .error = error,
+                 .what = what,
+                 .nodes_max = times * IMKI_DOCUMENT_NODES_MAX};
     imk_status status = index_characters(&b);
     if (status == IMK_OK)
         status = build(&b);

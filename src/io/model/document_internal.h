@@ -51,6 +51,11 @@ imk_status imki_document_parse(const char *text, size_t size, imk_document **doc
 imk_status imki_document_parse_as(const char *what, const char *head, const char *text, size_t size,
                                   imk_document **document, imk_error *error);
 
+/* The same for files that may be `times` as long and have as many more values. */
+imk_status imki_document_parse_large(const char *what, const char *head, int times,
+                                     const char *text, size_t size, imk_document **document,
+                                     imk_error *error);
+
 /* Value of a key of a mapping; IMKI_NONE when there is none. */
 int imki_document_value(const imk_document *document, int mapping, const char *key);
 

@@ -95,4 +95,6 @@ void imki_tell_damage(const imk_record_source *source, imk_findings *findings)
                   IMKI_NUMBERS((double)f.headers, (double)f.first_header));
     if (f.cut_short)
         imki_find(findings, IMK_FINDING_WARNING, "cut_short", NULL, IMKI_NUMBERS((double)f.rows));
+    if (f.received)
+        imki_find(findings, IMK_FINDING_WARNING, "received", NULL, 0, NULL);
 }

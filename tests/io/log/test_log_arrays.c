@@ -172,9 +172,10 @@ static void check_refused(const char *name, settings s, imk_status due, const ch
 static void refusals(void **state)
 {
     (void)state;
-    check_refused("stored.npz", (settings){0}, IMK_ERROR_UNIT_MISSING,
-                  "\"time\", \"gyro_x\", \"accel_x\", … have no unit; add --time-unit UNIT --gyro-unit "
-                  "UNIT --accel-unit UNIT (UNIT is the unit of the log)");
+    check_refused(
+        "stored.npz", (settings){0}, IMK_ERROR_UNIT_MISSING,
+        "\"time\", \"gyro_x\", \"accel_x\", … have no unit; add --time-unit UNIT --gyro-unit "
+        "UNIT --accel-unit UNIT (UNIT is the unit of the log)");
     check_refused("stored.npz", (settings){.gyro = "rad/s"}, IMK_ERROR_UNIT_MISSING,
                   "add --time-unit UNIT --accel-unit UNIT (UNIT");
     check_refused("lengths.npz", (settings){0}, IMK_ERROR_NAME_UNKNOWN,

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The writer of ROS 1 bags, as in imki_log_codec. */
+#ifndef IMUKIT_LOG_BAG_WRITE_INTERNAL_H
+#define IMUKIT_LOG_BAG_WRITE_INTERNAL_H
+
+#include "log_ros_write_internal.h"
+
+imk_status imki_bag_create(imki_log_output *log, const char *path, imk_error *error);
+void imki_bag_begin(imki_log_output *log);
+imk_status imki_bag_write(imki_log_output *log, const char *bytes, size_t size, size_t rows);
+imk_status imki_bag_end(imki_log_output *log, imk_error *error);
+void imki_bag_discard(imki_log_output *log);
+
+#endif

@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From messages to rows: which topic, which columns, and by which of the two times.
+ *
+ * The time of a row is header.stamp, that of the measurement. Where no stamp is set, the time at
+ * which the message was recorded takes its place, which is told. Rows stand as the messages do: if
+ * a log was recorded out of order, its times say so. */
+#include "log_ros_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <zstd.h>
+
+/* ---- one message ---- */
+
+/* @param of  its topic */
+static bool decode(imki_ros_log *log, const imki_ros_topic *of, const imki_ros_message *message,
+                   imki_imu *imu)
+{
+    const uint8_t *data = message->data;
+    size_t size = message->size;
+    if (log->packed) {
+        size = ZSTD_decompressDCtx(log->unpacker, log->unpacked, IMKI_ROS_MESSAGE_MAX, data, size);
+        data = log->unpacked;
+        if (ZSTD_isError(size))
+            return false;
+    }
+    return imki_ros_imu_read(of->encoding, data, size, imu);
+}
+
+/* ---- the look at the beginning ---- */
+
+static void look_at(imki_ros_log *log, imki_ros_topic *topic, const imki_ros_message *message)
+{
+    imki_imu imu;
+    if (topic->encoding == IMKI_ROS_OTHER || topic->seen >= IMKI_ROS_LOOK ||
+        !decode(log, topic, message, &imu))
+        return;
+    log->held = true;
+    if (topic->seen == 0)
+        topic->first = imu;
+    if (topic->seen < 2) {
+        topic->time[topic->seen][0] = imu.stamp;
+        topic->time[topic->seen][1] = message->received;
+    }
+    topic->stamped |= imu.stamp != 0;
+    topic->seen++;
+}
+
+/* With an index, until the first messages of the topic are known; without, as far as is looked for
+ * topics. */
+static imk_status look(imki_ros_log *log, imk_error *error)
+{
+    imki_ros_message message;
+    imk_status status = IMK_OK;
+    for (bool found = true; status == IMK_OK && found;) {
+        status = log->container->next(log, &message, &found, error);
+        imki_ros_topic *topic =
+            status == IMK_OK && found ? imki_ros_topic_of(log, message.channel) : NULL;
+        if (!topic || (log->indexed && topic != &log->topics[log->topic]))
+            continue;
+        look_at(log, topic, &message);
+        if (log->indexed && topic->seen == IMKI_ROS_LOOK)
+            break;
+    }
+    log->looking = false;
+    return status == IMK_OK ? log->container->back(log, error) : status;
+}
+
+static imk_status choose(imki_ros_log *log, imk_error *error)
+{
+    imk_log_reader *reader = log->reader;
+    imk_status status = IMK_OK;
+    for (size_t i = 0; i < log->topic_count && status == IMK_OK; i++) {
+        imki_ros_topic *topic = &log->topics[i];
+        /* One that nobody published to is not to be asked about. */
+        const bool used = log->counted   ? topic->stream.samples > 0
+                          : log->indexed ? true
+                                         : topic->seen > 0;
+        topic->stream.readable = topic->encoding != IMKI_ROS_OTHER && used;
+        status = imki_log_stream_add(reader, &topic->stream, error);
+    }
+    if (status == IMK_OK)
+        status = imki_log_stream_choose(reader, "no topic of the log has messages sensor_msgs/Imu",
+                                        &log->topic, error);
+    return status;
+}
+
+/* ---- columns and times ---- */
+
+static imk_status make_layout(imki_ros_log *log, imk_error *error)
+{
+    static const char *const all[7] = {"time [s]",       "gyro_x [rad/s]",  "gyro_y [rad/s]",
+                                       "gyro_z [rad/s]", "accel_x [m/s^2]", "accel_y [m/s^2]",
+                                       "accel_z [m/s^2]"};
+    const imki_ros_topic *topic = &log->topics[log->topic];
+    const char *names[7] = {all[0]};
+    for (int i = 1; i < 7; i++)
+        names[i] = topic->first.has[(i - 1) / 3] ? all[i] : NULL;
+    if (topic->seen > 0 && !topic->first.has[0] && !topic->first.has[1])
+        return imk_error_set(error, IMK_ERROR_EMPTY, topic->stream.name,
+                             "its messages hold neither angular rate nor specific force: their "
+                             "covariances begin with -1",
+                             "a topic with gyros or accelerometers");
+    return imki_log_layout_of(log->reader, 7, names, error);
+}
+
+/* Wraps, as the times of a hostile log may be any. */
+static int64_t difference(int64_t a, int64_t b)
+{
+    return (int64_t)((uint64_t)a - (uint64_t)b);
+}
+
+static imk_status find_times(imki_ros_log *log, imk_error *error)
+{
+    enum { BILLION = 1000000000 };
+    imk_log_reader *reader = log->reader;
+    const imki_ros_topic *topic = &log->topics[log->topic];
+    double time[2];
+    log->by_receipt = !topic->stamped;
+    log->origin = imki_log_stamp_origin(reader, topic->time[0][log->by_receipt], BILLION);
+    for (int i = 0; i < 2; i++)
+        time[i] = (double)difference(topic->time[i][log->by_receipt], log->origin) / BILLION;
+    return imki_log_first_rows(reader, topic->seen, time, "the topic has no message that is whole",
+                               "messages sensor_msgs/Imu", error);
+}
+
+imki_ros_log *imki_ros_log_of(imk_log_reader *reader)
+{
+    imki_ros_log *log = reader->state;
+    log->reader = reader;
+    if (!log->apart)
+        log->text = &reader->text;
+    return log;
+}
+
+imk_status imki_ros_open(imki_ros_log *log, imk_error *error)
+{
+    imk_status status = IMK_OK;
+    if (log->packed &&
+        (!(log->unpacked = malloc(IMKI_ROS_MESSAGE_MAX)) || !(log->unpacker = ZSTD_createDCtx())))
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    log->looking = true;
+    if (log->indexed)
+        status = choose(log, error);
+    if (status == IMK_OK)
+        status = look(log, error);
+    if (status == IMK_OK && !log->indexed)
+        status = choose(log, error);
+    if (status == IMK_OK)
+        status = make_layout(log, error);
+    return status == IMK_OK ? find_times(log, error) : status;
+}
+
+/* ---- rows ---- */
+
+/* A second sensor that was not there at the beginning: which one is meant is not known. */
+static imk_status refuse_second(const imki_ros_log *log, const imki_ros_topic *other,
+                                imk_error *error)
+{
+    char found[96], expected[256];
+    snprintf(found, sizeof found, "a second sensor, %.64s, begins later", other->stream.name);
+    snprintf(expected, sizeof expected, "add --topic %.96s (or --topic %.96s)",
+             log->topics[log->topic].stream.name, other->stream.name);
+    return imk_error_set(error, IMK_ERROR_NAME_UNKNOWN, "topic", found, expected);
+}
+
+static void put_row(imki_ros_log *log, const imki_imu *imu, int64_t received, double *const *out,
+                    size_t row)
+{
+    imk_log_reader *reader = log->reader;
+    const imki_log_layout_read *layout = &reader->layout;
+    const int64_t time = log->by_receipt ? received : imu->stamp;
+    bool finite = true;
+    out[0][row] = (double)difference(time, log->origin) / 1e9;
+    for (int i = 0; i < 6; i++) {
+        if (layout->cell_column[i + 1] < 0)
+            continue;
+        const double value = imu->value[i / 3][i % 3];
+        out[i + 1][row] = value * layout->cell_factor[i + 1];
+        finite &= isfinite(value) != 0;
+    }
+    if (!finite && reader->not_finite++ == 0)
+        reader->first_not_finite = reader->rows + row + 1;
+}
+
+imk_status imki_ros_read(imk_log_reader *reader, size_t max_rows, double *const *out, size_t *rows,
+                         imk_error *error)
+{
+    imki_ros_log *log = imki_ros_log_of(reader);
+    imki_ros_message message;
+    imki_imu imu;
+    bool found = true;
+    reader->received = log->by_receipt;
+    for (log->rows = 0; log->rows < max_rows;) {
+        *rows = log->rows;
+        const imk_status status = log->container->next(log, &message, &found, error);
+        if (status != IMK_OK || !found)
+            return status;
+        imki_ros_topic *topic = imki_ros_topic_of(log, message.channel);
+        if (topic != &log->topics[log->topic]) {
+            if (!topic && !log->moved)
+                imki_log_damage(reader, log->rows);
+            if (topic && topic->encoding != IMKI_ROS_OTHER && topic->seen++ == 0 && !log->indexed &&
+                !reader->settings.topic)
+                return refuse_second(log, topic, error);
+            continue;
+        }
+        if (!decode(log, topic, &message, &imu)) {
+            imki_log_damage(reader, log->rows);
+            continue;
+        }
+        put_row(log, &imu, message.received, out, log->rows++);
+    }
+    *rows = log->rows;
+    return IMK_OK;
+}
+
+void imki_ros_close(imki_ros_log *log)
+{
+    free(log->topics);
+    free(log->channels);
+    free(log->unpacked);
+    ZSTD_freeDCtx(log->unpacker);
+}

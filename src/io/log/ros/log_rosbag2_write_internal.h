@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The writer of bags of ROS 2, as in imki_log_codec. */
+#ifndef IMUKIT_LOG_ROSBAG2_WRITE_INTERNAL_H
+#define IMUKIT_LOG_ROSBAG2_WRITE_INTERNAL_H
+
+#include "log_ros_write_internal.h"
+
+imk_status imki_rosbag2_create(imki_log_output *log, const char *path, imk_error *error);
+imk_status imki_rosbag2_write(imki_log_output *log, const char *bytes, size_t size, size_t rows);
+imk_status imki_rosbag2_end(imki_log_output *log, imk_error *error);
+void imki_rosbag2_discard(imki_log_output *log);
+
+#endif
