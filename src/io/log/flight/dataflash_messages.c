@@ -158,14 +158,15 @@ static bool take_piece(imki_dataflash *flash, const imki_dataflash_format *forma
 
 /* A message at hand. @param made  is set if it is of a sensor
  * @return whether it can be read; *memory false: there was none */
-static bool take(imki_dataflash *flash, const char *message, size_t size, imki_flight_message *made,
-                 bool *memory)
+static bool take(imk_log_reader *reader, size_t size, imki_flight_message *made, bool *memory)
 {
+    imki_dataflash *flash = reader->state;
+    const char *message = reader->text.next;
     const int number = message_number(message);
     const imki_dataflash_format *format = &flash->format[number];
     *memory = true;
     if (number == IMKI_DATAFLASH_FMT)
-        return imki_dataflash_define(flash, message);
+        return !imki_flight_learns(reader) || imki_dataflash_define(flash, message);
     if (format->sensor >= 0) {
         const bool counted = format->instance.type == IMKI_FLIGHT_UINT8;
         const size_t instance = counted ? imki_flight_whole(&format->instance, message) : 0;
@@ -203,7 +204,7 @@ imk_status imki_dataflash_next(imk_log_reader *reader, imki_flight_message *mess
         if (status != IMK_OK || left == 0)
             return status;
         if (size > 0) {
-            if (!take(flash, text->next, size, message, &memory))
+            if (!take(reader, size, message, &memory))
                 imki_log_damage(reader, flash->log.rows);
             if (!memory)
                 return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);

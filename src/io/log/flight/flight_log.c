@@ -50,6 +50,12 @@ static uint64_t size_of(const imki_log_text *text)
     return size;
 }
 
+bool imki_flight_learns(const imk_log_reader *reader)
+{
+    const imki_flight_log *log = reader->state;
+    return log->surveying || imki_log_text_place(&reader->text) >= log->surveyed;
+}
+
 static void count(imki_flight_log *log, const imki_flight_message *m)
 {
     imki_flight_stream *stream = &log->streams[m->stream];
@@ -143,6 +149,7 @@ static imk_status survey(imk_log_reader *reader, imk_error *error)
     log->surveying = true;
     imk_status status = walk(reader, log->begin + SURVEY, &whole, error);
     log->surveying = false;
+    log->surveyed = imki_log_text_place(text);
     if (status == IMK_OK)
         estimate(reader, whole);
     const uint64_t walked = imki_log_text_place(text), size = free_to_move ? size_of(text) : 0;
@@ -161,10 +168,14 @@ static imk_status survey(imk_log_reader *reader, imk_error *error)
     return status == IMK_OK ? go_to(reader, log->begin, error) : status;
 }
 
+/* A sensor in the order of the list. */
+typedef struct place {
+    const imki_flight_stream *stream;
+} place;
+
 static int compare(const void *a, const void *b)
 {
-    const imki_flight_stream *const *one = a, *const *other = b;
-    const imki_flight_stream *x = *one, *y = *other;
+    const imki_flight_stream *x = ((const place *)a)->stream, *y = ((const place *)b)->stream;
     if (x->about.readable != y->about.readable)
         return x->about.readable ? -1 : 1;
     if (x->rank != y->rank)
@@ -176,20 +187,20 @@ static imk_status choose(imk_log_reader *reader, imk_error *error)
 {
     imki_flight_log *log = reader->state;
     size_t index = 0;
-    const imki_flight_stream **order = malloc((log->stream_count + 1) * sizeof *order);
+    place *order = malloc((log->stream_count + 1) * sizeof *order);
     if (!order)
         return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     for (size_t i = 0; i < log->stream_count; i++)
-        order[i] = &log->streams[i];
-    qsort((void *)order, log->stream_count, sizeof *order, compare);
+        order[i].stream = &log->streams[i];
+    qsort(order, log->stream_count, sizeof *order, compare);
     imk_status status = IMK_OK;
     for (size_t i = 0; i < log->stream_count && status == IMK_OK; i++)
-        status = imki_log_stream_add(reader, &order[i]->about, error);
+        status = imki_log_stream_add(reader, &order[i].stream->about, error);
     if (status == IMK_OK)
         status = imki_log_stream_choose(reader, log->nothing, &index, error);
     if (status == IMK_OK)
-        log->chosen = (size_t)(order[index] - log->streams);
-    free((void *)order);
+        log->chosen = (size_t)(order[index].stream - log->streams);
+    free(order);
     return status;
 }
 

@@ -94,9 +94,10 @@ typedef struct imki_flight_log {
     size_t row;            /* rows of the message at hand that are read */
     size_t rows;           /* read before in this call, for imki_log_damage() */
     uint64_t until;
-    bool surveying; /* sensors may be added */
-    bool lost;      /* we are somewhere in the log and no message is found yet */
-    bool sought;    /* not all before was read: messages may be of unknown kinds */
+    bool surveying;    /* sensors may be added */
+    uint64_t surveyed; /* byte up to which all definitions are known */
+    bool lost;         /* we are somewhere in the log and no message is found yet */
+    bool sought;       /* not all before was read: messages may be of unknown kinds */
 } imki_flight_log;
 
 /* Add a sensor. `name` and `kind` are copied.
@@ -112,6 +113,10 @@ imk_status imki_flight_read(imk_log_reader *reader, size_t max_rows, double *con
                             size_t *rows, imk_error *error);
 imk_status imki_flight_seek(imk_log_reader *reader, double fraction, imk_error *error);
 void imki_flight_close(imk_log_reader *reader);
+
+/* May what stands here define anything? Where all was looked at it must not, because what comes
+ * before it would be read otherwise the next time. */
+bool imki_flight_learns(const imk_log_reader *reader);
 
 /* Stamp and rows of a message of `stream`, whose fields are at `body`. */
 imki_flight_message imki_flight_message_of(const imki_flight_plan *plan, size_t stream,

@@ -204,7 +204,7 @@ static imk_status learn(imk_log_reader *reader, size_t size, imk_error *error)
     imki_ulog *ulog = reader->state;
     const char *at = reader->text.next;
     bool memory = true;
-    if (at[2] == 'A')
+    if (at[2] == 'A' && imki_flight_learns(reader))
         return subscribe(ulog, at + HEADER, size - HEADER, error);
     if (at[2] == 'F' && ulog->log.surveying &&
         !imki_ulog_format_add(&ulog->formats, at + HEADER, size - HEADER, &memory) && memory)
@@ -235,9 +235,10 @@ static imk_status take(imk_log_reader *reader, size_t size, imki_flight_message 
     imki_ulog *ulog = reader->state;
     imki_log_text *text = &reader->text;
     trust found;
+    static const imki_ulog_number none = {.stream = -1};
     const bool data = text->next[2] == 'D' && size >= HEADER + 2;
-    const imki_ulog_number *number = data ? &ulog->number[number16(text->next + HEADER)] : NULL;
-    const bool sensor = number && number->known && number->stream >= 0;
+    const imki_ulog_number *number = data ? &ulog->number[number16(text->next + HEADER)] : &none;
+    const bool sensor = number->known && number->stream >= 0;
     imk_status status = look(ulog, text, sensor, &found, error);
     if (status != IMK_OK)
         return status;
@@ -251,7 +252,7 @@ static imk_status take(imk_log_reader *reader, size_t size, imki_flight_message 
                                           (size_t)number->stream, text->next + HEADER + 2, size);
         return IMK_OK;
     }
-    if (number && found == UNKNOWN && (number->known || !ulog->log.sought))
+    if (data && found == UNKNOWN && (number->known || !ulog->log.sought))
         imki_log_damage(reader, ulog->log.rows);
     status = learn(reader, size, error);
     text->next += size;
