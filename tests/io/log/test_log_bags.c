@@ -329,7 +329,7 @@ static void test_refusals(void **state)
     char path[256], other[300];
     imk_error error;
     static bag_table t;
-    bag_save(bag_path("old.bag", path), "#ROSBAG V1.2\n----", 17);
+    bag_save(bag_path("old.bag", path), "#ROSBAG V2.1\n----", 17);
     bag_refused(path, NULL, IMK_ERROR_UNSUPPORTED, "not of version 2.0", "rosbag fix");
     remove(path);
     bag_refused(SOURCE_DIRECTORY "/tests", NULL, IMK_ERROR_OPEN, "no metadata.yaml",
