@@ -245,10 +245,7 @@ static void test_without_end(void **state)
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         snprintf(line, sizeof line, "( ulimit -f 2048; %s )", lines[i]);
         assert_int_equal(run(line), 1);
-        check_contains(err,
-                       "error: /dev/zero: the file is neither text nor .npy, and not compressed by "
-                       "gzip or zstd\n",
-                       line);
+        check_contains(err, "error: /dev/zero: the file is neither text, .npy, ", line);
     }
     /* What ends, and can be read after a conversion, is told that. */
     assert_int_equal(run("iconv -f UTF-8 -t UTF-16 log.csv | $I identify /dev/stdin"), 1);
