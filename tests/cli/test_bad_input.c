@@ -15,7 +15,8 @@ static const struct bad_log {
     {":", "missing.csv",
      "missing.csv: the file cannot be opened: No such file or directory; check the path\n"},
     {"mkdir dir.csv", "dir.csv",
-     "dir.csv: the file cannot be opened: Is a directory; give a file, not a folder\n"},
+     "dir.csv: this is a folder, without a metadata.yaml; give a file, or the folder of a bag of "
+     "ROS 2 (ros2 bag reindex FOLDER writes that file)\n"},
     {": >empty.csv", "empty.csv", "empty.csv: the file is empty\n"},
     {"head -1 good.csv >b.csv", "b.csv", "b.csv: the log has a header but no rows; expected"},
     {"head -2 good.csv >b.csv", "b.csv",

@@ -332,7 +332,7 @@ static void test_refusals(void **state)
     bag_save(bag_path("old.bag", path), "#ROSBAG V2.1\n----", 17);
     bag_refused(path, NULL, IMK_ERROR_UNSUPPORTED, "not of version 2.0", "rosbag fix");
     remove(path);
-    bag_refused(SOURCE_DIRECTORY "/tests", NULL, IMK_ERROR_OPEN, "no metadata.yaml",
+    bag_refused(SOURCE_DIRECTORY "/tests", NULL, IMK_ERROR_OPEN, "without a metadata.yaml",
                 "ros2 bag reindex");
     /* A database that is being recorded has a second file. */
     size_t size;

@@ -217,7 +217,7 @@ static imk_status next_outside(imki_mcap *mcap, imki_ros_message *message, bool 
 {
     imki_ros_log *log = mcap->log;
     imki_mcap_record record;
-    bool there, whole, enough = false;
+    bool there, whole = false, enough = false;
     imk_status status = imki_mcap_head(log, &record, &there, error);
     if (status == IMK_OK && there)
         imki_ros_mark(log, IMKI_MCAP_HEAD + record.size, &enough);

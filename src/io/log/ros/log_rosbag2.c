@@ -101,8 +101,9 @@ static imk_status open_folder(imki_rosbag2 *bag, const char *folder, imk_error *
         snprintf(path, size + sizeof "/metadata.yaml", "%s/metadata.yaml", name);
         status = imki_text_file_read(path, METADATA_MAX, &text, &size, error);
         if (status == IMK_ERROR_OPEN)
-            imk_error_set(error, status, folder, "the folder has no metadata.yaml",
-                          "if it is a bag of ROS 2, write it: ros2 bag reindex FOLDER");
+            imk_error_set(error, status, folder, "this is a folder, without a metadata.yaml",
+                          "give a file, or the folder of a bag of ROS 2 (ros2 bag reindex FOLDER "
+                          "writes that file)");
     }
     if (status == IMK_OK)
         status = imki_rosbag2_metadata(bag, name, text, size, error);
