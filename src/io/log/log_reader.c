@@ -37,10 +37,14 @@ static imk_status check_settings(const imk_log_settings *settings, imk_error *er
                              settings->gyro_range ? "gyro-range" : "accel-range",
                              "it is the full scale of a device, and none is named",
                              "add --device PART, or state --gyro-scale, --accel-scale");
+    if (settings->binary && settings->format && strcmp(settings->format, "binary") != 0)
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "binary",
+                             "--binary is the format of the file, and --format states another",
+                             "leave one of the two out");
     return imki_log_part_check(settings, error);
 }
 
-static imk_status refuse_format(const char *name, imk_error *error)
+static void refuse_format(const char *name, imk_error *error)
 {
     char found[96], expected[400] = "one of";
     size_t used = strlen(expected);
@@ -55,28 +59,24 @@ static imk_status refuse_format(const char *name, imk_error *error)
             imki_append_text(expected, sizeof expected, ", ");
             imki_append_text(expected, sizeof expected, dialect->format);
         }
-    return imk_error_set(error, IMK_ERROR_NAME_UNKNOWN, "format", found, expected);
+    imk_error_set(error, IMK_ERROR_NAME_UNKNOWN, "format", found, expected);
 }
 
 /* The format, by the settings, or by the content; that of folders where there is no input. */
 static imk_status find_format(imk_log_reader *reader, const imki_input *input, imk_error *error)
 {
     const imki_log_text *text = &reader->text;
-    const bool described = reader->settings.binary != NULL;
-    const char *name = reader->settings.format;
-    if (described && name && strcmp(name, "binary") != 0)
-        return imk_error_set(error, IMK_ERROR_CONFLICT, "binary",
-                             "--binary is the format of the file, and --format states another",
-                             "leave one of the two out");
-    name = described ? "binary" : name;
+    const char *name = reader->settings.binary ? "binary" : reader->settings.format;
     const bool of_text = name && imki_log_dialect_named(name);
     reader->format =
         of_text ? imk_log_format_get(0)
         : name  ? imk_log_format_named(name)
         : input ? imki_log_recognise(reader->path, text->next, (size_t)(text->end - text->next))
                 : imki_log_format_of_folders();
-    if (!reader->format)
-        return refuse_format(name, error);
+    if (!reader->format) {
+        refuse_format(name, error);
+        return IMK_ERROR_NAME_UNKNOWN;
+    }
     reader->codec = imki_log_codec_of(reader->format);
     if (!input && !reader->codec->folders) {
         char found[96];

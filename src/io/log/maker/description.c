@@ -146,7 +146,7 @@ static int digit_of(char c)
 static imk_status read_sync(parser *p)
 {
     static const char example[] = "\"sync 0xAA55\"";
-    char word[2 + 2 * IMKI_SYNC_MAX + 2];
+    char word[2 + 2 * IMKI_SYNC_MAX + 2] = "";
     if (p->form->size > 0)
         return refuse(p, IMK_ERROR_SYNTAX, "it belongs before all fields",
                       "\"sync 0xAA55, u32 time us\"");

@@ -227,6 +227,9 @@ static imk_status layout(imk_log_reader *reader, imki_messages *m, const imki_me
         m->accel_scale = imu->accel_scale;
     }
     const imk_status status = imki_log_layout_of(reader, 7, names, error);
+    for (size_t i = 0; i < reader->layout.column_count; i++)
+        reader->layout.column[i].unit_origin =
+            imu || (int)i == reader->layout.time_column ? IMK_UNIT_OF_FORMAT : IMK_UNIT_OF_SETTINGS;
     return status == IMK_ERROR_UNIT_MISSING ? refuse_type(m, first, error) : status;
 }
 
@@ -260,5 +263,4 @@ static imk_status open_novatel(imk_log_reader *reader, imk_error *error)
 const imki_log_codec imki_log_novatel = {.recognise = recognise,
                                          .open = open_novatel,
                                          .read = imki_messages_read,
-                                         .seek = imki_messages_seek,
-                                         .defines_units = true};
+                                         .seek = imki_messages_seek};

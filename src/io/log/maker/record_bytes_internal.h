@@ -31,7 +31,7 @@ static inline uint64_t imki_big(const void *bytes, size_t size)
 /* The two's complement number in the lowest bits. @param bits  1 … 64 */
 static inline int64_t imki_signed(uint64_t number, unsigned bits)
 {
-    const uint64_t sign = UINT64_C(1) << (bits - 1);
+    const uint64_t sign = UINT64_C(1) << ((bits - 1) & 63);
     const uint64_t extended = bits < 64 ? ((number & (2 * sign - 1)) ^ sign) - sign : number;
     int64_t value;
     memcpy(&value, &extended, sizeof value);
