@@ -101,8 +101,8 @@ static imk_status look_at_begin(seen *s, const char *block, size_t size, const c
     if (s->text)
         return IMK_OK;
     return imk_error_set(error, IMK_ERROR_FORMAT, path,
-                         "the file is neither text nor a log of a known format, nor packed by "
-                         "gzip or zstd",
+                         "this is neither text nor a log that is read without a file, nor packed "
+                         "by gzip or zstd",
                          "");
 }
 

@@ -246,8 +246,8 @@ static void test_without_end(void **state)
         snprintf(line, sizeof line, "( ulimit -f 2048; %s )", lines[i]);
         assert_int_equal(run(line), 1);
         check_contains(err,
-                       "error: /dev/zero: the file is neither text nor a log of a known "
-                       "format, nor packed by gzip or zstd\n",
+                       "error: /dev/zero: this is neither text nor a log that is read without a "
+                       "file, nor packed by gzip or zstd\n",
                        line);
     }
     /* Logs that only a closer look tells, or an option. */

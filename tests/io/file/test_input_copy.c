@@ -172,7 +172,7 @@ static void without_end(void **state)
     (void)state;
     check_refused(
         "/dev/zero",
-        "the file is neither text nor a log of a known format, nor packed by gzip or zstd");
+        "this is neither text nor a log that is read without a file, nor packed by gzip or zstd");
     int ends[2];
     char path[40];
     assert_int_equal(pipe(ends), 0);

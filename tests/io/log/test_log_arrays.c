@@ -94,6 +94,7 @@ static void npz(void **state)
     check_log("stored.npz", si);
     check_log("deflated.npz", (settings){0});
     check_log("matrix.npz", (settings){0});
+    check_log("zip64.npz", (settings){0});
     check_log("named.npz",
               (settings){.columns = "t [s],gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s],"
                                     "accel_x [m/s^2],accel_y [m/s^2],accel_z [m/s^2]"});

@@ -47,7 +47,8 @@ static bool receive_failure(int socket, imk_status *status, imk_error *error)
     imki_array_other said;
     if (!receive_other(socket, &said))
         return false;
-    *status = imk_error_set(error, IMK_ERROR_FORMAT, "", said.name, said.kind);
+    *status = said.name[0] ? imk_error_set(error, IMK_ERROR_FORMAT, "", said.name, said.kind)
+                           : imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     return true;
 }
 

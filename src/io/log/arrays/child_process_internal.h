@@ -9,6 +9,19 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
+/* Sanitizers reserve terabytes of addresses: with them there is no limit of memory. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define IMKI_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) ||                         \
+    __has_feature(memory_sanitizer)
+#define IMKI_SANITIZED 1
+#endif
+#endif
+#ifndef IMKI_SANITIZED
+#define IMKI_SANITIZED 0
+#endif
+
 typedef struct imki_child {
     pid_t process; /* 0: none */
     int socket;    /* -1: closed */

@@ -308,8 +308,10 @@ bool imki_hdf5_list_all(imki_hdf5_list *list)
 {
     walk *w = calloc(1, sizeof *w);
     const hid_t top = w ? H5Gopen2(list->file, "/", H5P_DEFAULT) : H5I_INVALID_HID;
-    if (!w)
+    if (!w) {
+        imki_hdf5_fail(list->socket, "", "");
         return false;
+    }
     w->list = list;
     if (H5Fget_filesize(list->file, &w->file_size) < 0 || top < 0) {
         imki_hdf5_fail(list->socket, "the HDF5 file is damaged", "copy the file again");

@@ -36,7 +36,7 @@ void imki_hdf5_serve(int file, int socket);
 bool imki_hdf5_list_all(imki_hdf5_list *list);
 /* Answer requests until the parent hangs up. */
 void imki_hdf5_give_rows(const imki_hdf5_list *list);
-/* Say why it does not go on. */
+/* Say why it does not go on. @param found  "": memory is exhausted */
 void imki_hdf5_fail(int socket, const char *found, const char *expected);
 
 /* Texts of an attribute, one a line. @return how many; 0: there is none, or it holds none */

@@ -164,6 +164,8 @@ static bool receive_columns(service *s)
     for (size_t i = 0; i < s->sources; i++)
         enough =
             (s->source[i].bytes = malloc(ROWS_MAX * s->source[i].record + 1)) != NULL && enough;
+    if (!enough)
+        imki_hdf5_fail(socket, "", "");
     return enough;
 }
 
@@ -204,8 +206,10 @@ void imki_hdf5_give_rows(const imki_hdf5_list *list)
 {
     service *s = calloc(1, sizeof *s);
     imki_rows_request request;
-    if (!s)
+    if (!s) {
+        imki_hdf5_fail(list->socket, "", "");
         return;
+    }
     s->list = list;
     bool good = receive_columns(s);
     while (good && imki_socket_receive(list->socket, &request, sizeof request)) {
@@ -217,7 +221,7 @@ void imki_hdf5_give_rows(const imki_hdf5_list *list)
             good = read_source(&s->source[i], request.first, request.count);
         if (!good) {
             imki_hdf5_fail(list->socket, "the values of a dataset cannot be read",
-                           "the file is damaged: copy it again");
+                           "copy the file again; chunks beyond 1 GiB are not read");
             break;
         }
         const imki_message message = {.kind = IMKI_MESSAGE_ROWS,
@@ -252,7 +256,9 @@ void imki_hdf5_serve(int file, int socket)
                            .array = calloc(IMKI_ARRAYS_MAX, sizeof(imki_hdf5_array))};
     H5PLset_loading_state(0); /* no filters from folders of others */
     list.file = open_file(file);
-    if (list.file < 0 || !list.array)
+    if (!list.array)
+        imki_hdf5_fail(socket, "", "");
+    else if (list.file < 0)
         imki_hdf5_fail(socket, "the HDF5 file is damaged or cut short", "copy the file again");
     else if (imki_hdf5_list_all(&list))
         imki_hdf5_give_rows(&list);

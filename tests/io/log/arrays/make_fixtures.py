@@ -10,6 +10,7 @@ multiple of 2^-10, which float32 has exactly, so what is read must be equal to t
 import os
 import struct
 import subprocess
+from unittest import mock
 
 import h5py
 import numpy as np
@@ -36,6 +37,8 @@ np.savez("stamps.npz", time=stamps.astype("M8[ns]"), gyro=(gyro * 1024).astype("
 np.savez_compressed("matrix.npz", data=matrix, columns=columns)
 np.savez("named.npz", data=matrix)
 np.savez("lengths.npz", **{"gyro [rad/s]": gyro, "accel [m/s^2]": accel[:15]})
+with mock.patch("zipfile.ZIP64_LIMIT", 1), mock.patch("zipfile.ZIP_FILECOUNT_LIMIT", 1):
+    np.savez("zip64.npz", **{"t [s]": t, "gyro [rad/s]": gyro, "accel [m/s^2]": accel})
 np.savez("records.npz", table=np.zeros(4, dtype=[("a", "f8"), ("b", "f8")]))
 
 scipy.io.savemat("plain.mat", dict(t=t, gyro=gyro, accel=accel.T, units=units))
