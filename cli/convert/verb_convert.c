@@ -209,7 +209,7 @@ const verb convert_verb = {
     .operands_maximum = 2,
     .last_is_written = true,
     .examples =
-        {{"imukit convert raw.csv log.csv.zst --rate 200Hz --gyro-unit deg/s --accel-unit g",
+        {{"imukit convert raw.csv log.csv.zst --gyro-unit deg/s --accel-unit g",
           "a log without units becomes a log that states its units"},
          {"imukit convert model.yaml imu.yaml --to kalibr --rate 200Hz",
           "a model becomes a parameter file of another program; without --to a parameter file "

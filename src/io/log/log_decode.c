@@ -76,7 +76,7 @@ static size_t decode(imki_log_decoder *d, char *out, size_t room)
             out[used++] = (char)(*d->raw == '\r' ? '\n' : *d->raw);
         return used;
     }
-    while (d->raw_end - d->raw >= 2 && room - used >= 4) {
+    while (d->raw_end - d->raw >= 2 && room - used >= IMKI_LOG_DECODED_LEAST) {
         unsigned c = unit_at(d, d->raw);
         size_t taken = 2;
         if (c >= 0xD800 && c < 0xDC00) {
@@ -100,7 +100,7 @@ imk_status imki_log_decode(imki_log_decoder *d, imki_input *input, char *out, si
 {
     for (;;) {
         *got = decode(d, out, room);
-        if (*got > 0 || d->finished || room < 4)
+        if (*got > 0 || d->finished)
             return IMK_OK;
         const size_t kept = (size_t)(d->raw_end - d->raw);
         size_t more;

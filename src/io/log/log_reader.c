@@ -311,22 +311,10 @@ const char *imk_log_label(const imk_log_reader *reader, size_t index)
 
 void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint64_t *size)
 {
-    const imki_log_text *text = &reader->text;
-    if (reader->codec->progress) {
+    if (reader->codec->progress)
         reader->codec->progress(reader, done, size);
-    } else if (text->raw_size > 0) {
-        *size = text->raw_size;
-        *done = *size - (uint64_t)(text->decoder.raw_end - text->decoder.raw);
-    } else if (text->buffer) {
-        const uint64_t consumed = text->taken + (uint64_t)(text->next - text->base);
-        const uint64_t fetched = text->taken + (uint64_t)(text->end - text->base);
-        imki_input_progress(text->input, done, size);
-        if (*done == fetched) /* it is not compressed */
-            *done = consumed;
-    } else {
-        *done = (uint64_t)(text->next - text->base);
-        *size = (uint64_t)(text->end - text->base);
-    }
+    else
+        imki_log_text_progress(&reader->text, done, size);
 }
 
 /* Intervals that the increments of these rows are divided by. */

@@ -76,6 +76,8 @@ static imk_status read_more(imki_log_text *text, imk_error *error)
     char *room = text->buffer + (text->end - text->base);
     const size_t size = text->capacity - (size_t)(text->end - text->base);
     size_t got;
+    if (text->decoder.encoding != IMKI_LOG_PLAIN && size < IMKI_LOG_DECODED_LEAST)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     const imk_status status =
         text->decoder.encoding != IMKI_LOG_PLAIN
             ? imki_log_decode(&text->decoder, text->input, room, size, &got, error)
@@ -126,12 +128,27 @@ uint64_t imki_log_text_place(const imki_log_text *text)
     return text->taken + (uint64_t)(text->next - text->base);
 }
 
+void imki_log_text_progress(const imki_log_text *text, uint64_t *done, uint64_t *size)
+{
+    if (text->raw_size > 0) {
+        *size = text->raw_size;
+        *done = *size - (uint64_t)(text->decoder.raw_end - text->decoder.raw);
+    } else if (text->buffer) {
+        const uint64_t consumed = text->taken + (uint64_t)(text->next - text->base);
+        const uint64_t fetched = text->taken + (uint64_t)(text->end - text->base);
+        imki_input_progress(text->input, done, size);
+        if (*done == fetched) /* it is not compressed */
+            *done = consumed;
+    } else {
+        *done = (uint64_t)(text->next - text->base);
+        *size = (uint64_t)(text->end - text->base);
+    }
+}
+
 uint64_t imki_log_text_size(const imki_log_text *text)
 {
     uint64_t done, size;
-    if (!text->buffer)
-        return (uint64_t)(text->end - text->base);
-    imki_input_progress(text->input, &done, &size);
+    imki_log_text_progress(text, &done, &size);
     return size;
 }
 

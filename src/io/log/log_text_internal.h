@@ -32,7 +32,11 @@ typedef struct imki_log_decoder {
 imk_status imki_log_decoder_start(imki_log_decoder *decoder, imki_log_encoding encoding,
                                   const char *begin, const char *end, bool finished,
                                   imk_error *error);
-/* Decode some more. @param got  bytes put into `out`; 0 at the end */
+enum { IMKI_LOG_DECODED_LEAST = 4 }; /* room that a character may need */
+
+/* Decode some more.
+ * @param room  at least IMKI_LOG_DECODED_LEAST
+ * @param got   bytes put into `out`; 0 at the end */
 imk_status imki_log_decode(imki_log_decoder *decoder, imki_input *input, char *out, size_t room,
                            size_t *got, imk_error *error);
 
@@ -67,6 +71,8 @@ uint64_t imki_log_text_place(const imki_log_text *text);
 
 /* Bytes of a plain file or of memory; 0 when it is not known. */
 uint64_t imki_log_text_size(const imki_log_text *text);
+/* Bytes of the input consumed and its size (0 when not known). */
+void imki_log_text_progress(const imki_log_text *text, uint64_t *done, uint64_t *size);
 
 /* Go to a byte of a plain file or of memory; lines count from 1 again. Pointers into the window are
  * void. @return as imki_input_seek(); IMK_ERROR_UNSUPPORTED for a text that is decoded */

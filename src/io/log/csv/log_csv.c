@@ -247,7 +247,7 @@ static imk_status seek_row(imk_log_reader *reader, double fraction, imk_error *e
     imki_log_piece line;
     uint64_t done, size;
     bool whole;
-    imk_log_progress(reader, &done, &size);
+    imki_log_text_progress(&reader->text, &done, &size);
     if (size < state->begin)
         size = state->begin;
     const uint64_t to = state->begin + (uint64_t)(fraction * (double)(size - state->begin));

@@ -211,10 +211,11 @@ imk_status imki_log_row_read(imki_log_layout_read *layout, imki_log_piece line, 
         if (column->label) {
             const size_t label = find_label(cells[i], labels, label_count);
             if (label == IMKI_LABELS_MAX)
-                return refuse(
-                    error, IMK_ERROR_UNSUPPORTED, column->name, cells[i],
-                    "at most 4096 different labels; add --columns with - to skip this column",
-                    line_number, place);
+                return refuse(error, IMK_ERROR_UNSUPPORTED, column->name, cells[i],
+                              "at most 4096 different labels; leave this column out, with --map or "
+                              "with - in its place "
+                              "in --columns",
+                              line_number, place);
             values[index] = (double)label;
             continue;
         }
