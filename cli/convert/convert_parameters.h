@@ -6,7 +6,7 @@
 #include "shell/command.h"
 
 /* The choice of --to that is a format of logs; it stands behind the others. */
-enum { CONVERT_TO_EUROC = 11 };
+enum { CONVERT_TO_EUROC = IMK_PARAMETERS_FUSION + 1 };
 
 typedef struct parameter_options {
     int from, to; /* imk_parameter_format; 0: not given; or CONVERT_TO_EUROC */
