@@ -106,14 +106,14 @@ typedef struct imk_log_reader imk_log_reader;
  *  The message of every error ends with the exact option to add.
  *  @return IMK_ERROR_OPEN, _READ, _WRITE (of the temporary copy), _EMPTY, _FORMAT, _COMPRESSED,
  *          _COLUMN, _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, _NAME_UNKNOWN (the
- * format; the topic, or several and none chosen), _UNSUPPORTED (a pipe, of a format that needs a
- *          file; a format that is only known by name), … */
+ *          format; the topic, or several and none chosen), _UNSUPPORTED (a pipe, of a format that
+ *          needs a file; a format that is only known by name), … */
 IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settings,
                                 imk_log_reader **reader, imk_error *error);
 
 /** The sensors of a log, without choosing one: as imk_log_open(), but settings.topic and .instance
  *  are left aside. Only what stands at the beginning, at the end and in an index of the file is
- * read.
+ *  read.
  *  @param stream  receives up to `most`, those that can be read first
  *  @param count   receives their number, which may be above `most`
  *  @return errors of imk_log_open(), but for a log in which there is nothing that can be read */
