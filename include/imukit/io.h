@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file io.h
- *  Everything of libimukit-io: jobs, files, threads, messages. Needs libyaml, zlib, zstd, lz4, bzip2,
- *  SQLite, pthreads.
+ *  Everything of libimukit-io: jobs, files, threads, messages. Needs libyaml, zlib, zstd, lz4,
+ *  bzip2, SQLite, pthreads.
  */
 #ifndef IMUKIT_IO_H
 #define IMUKIT_IO_H
