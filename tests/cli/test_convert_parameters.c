@@ -47,7 +47,7 @@ static void test_from_model(void **state)
         "$I convert model.yaml out.x --to kalibra", 2,
         "imukit convert: error: --to kalibra: expected one of "
         "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter|"
-        "lio-sam|fast-lio|dlio|glim|orb-slam3|gtsam|airsim|fusion\n" TRY("convert"));
+        "lio-sam|fast-lio|dlio|glim|orb-slam3|gtsam|airsim|fusion|euroc\n" TRY("convert"));
     check_message("$I convert model.yaml /nowhere/out.yaml --to navego", 1,
                   "imukit convert: error: /nowhere/out.yaml: the folder /nowhere does not exist; "
                   "create this folder, or choose another\n");
@@ -167,6 +167,12 @@ static void test_refused(void **state)
     put("log.csv", "time [s],gyro_x [deg/s]\n0,1\n0.1,2\n");
     assert_int_equal(run("$I convert log.csv out.csv --sensor a"), 2);
     check_contains(err, "are for parameter files", "log.csv");
+    assert_int_equal(run("$I convert log.csv out.csv --to euroc --select time"), 2);
+    check_contains(err, "--to euroc has its columns and units", "log.csv");
+    put("unit.yaml", "imukit: 1\n");
+    assert_int_equal(run("$I convert unit.yaml out.yaml --to euroc && rm unit.yaml"), 2);
+    check_contains(err, "--to euroc is for logs, and unit.yaml is a model", "unit.yaml");
+    assert_int_equal(run("rm unit.yaml"), 0);
     assert_int_equal(run("$I convert deg.yaml - --from kalibr --json"), 2);
     assert_int_equal(access("out.yaml", F_OK), -1);
     assert_int_equal(sweep(), 4);
