@@ -76,9 +76,9 @@ typedef struct imk_log_settings {
     /** Which of the sensors of one name: its imk_log_stream.instance plus 1; 0: the only one. */
     int instance;
     /** What a count of gyros and accelerometers is, "16.4 LSB/(deg/s)", "0.061 mg/LSB"
-     *  (imk_count_scale_parse()). Or the device whose counts these are, with its full scales, "2000
-     *  deg/s", "16 g", where it has several (imk_device_sensitivity_find()); its temperature then is
-     *  converted, too. NULL: counts stay counts. */
+     *  (imk_count_scale_parse()). Or the device whose counts these are, with its full scales,
+     *  "2000 deg/s", "16 g", where it has several (imk_device_sensitivity_find()); then its
+     *  temperature is converted, too. NULL: counts stay counts. */
     const char *gyro_scale, *accel_scale;
     const char *device, *gyro_range, *accel_range;
     double rate; /**< sampling rate [Hz]; required without a time column; 0: from the times */
@@ -235,8 +235,8 @@ typedef struct imk_log_writer imk_log_writer;
  *  @param row_count  number of rows if known, else 0. Only a .npy that is not a plain file (a pipe,
  *                    compressed) needs it, and then exactly.
  *  @return IMK_ERROR_OPEN, IMK_ERROR_COLUMN (a name; a column that the format does not hold),
- *          IMK_ERROR_ARGUMENT (a unit or decimals), IMK_ERROR_UNSUPPORTED (the ending; a format that
- *          needs a plain file; a .npy that needs row_count; more rows than a .mat holds),
+ *          IMK_ERROR_ARGUMENT (a unit or decimals), IMK_ERROR_UNSUPPORTED (the ending; a format
+ *          that needs a plain file; a .npy that needs row_count; more rows than a .mat holds),
  *          IMK_ERROR_WRITE (no temporary file), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_create(const char *path, size_t column_count,
                                   const imk_log_column *columns, imk_log_precision precision,
