@@ -195,6 +195,91 @@ static void test_two_topics(void **state)
     bag_refused(BAGS "none.bag", &settings, IMK_ERROR_CONFLICT, "", "--columns");
 }
 
+/* A record of a bag without chunks, by its `op` and a text in it. @return its size */
+static size_t find_record(const char *bag, size_t size, int op, const char *text, const char **at)
+{
+    for (size_t place = 13; place < size;) {
+        const size_t header = imki_get_u32((const uint8_t *)bag + place);
+        const size_t data = imki_get_u32((const uint8_t *)bag + place + 4 + header);
+        const size_t all = 8 + header + data, length = strlen(text);
+        bool is_op = false, has = false;
+        for (size_t i = 4; i + 4 <= 4 + header; i++)
+            is_op |= memcmp(bag + place + i, "op=", 3) == 0 && bag[place + i + 3] == op;
+        for (size_t i = 4; i + length <= all; i++)
+            has |= memcmp(bag + place + i, text, length) == 0;
+        if (is_op && has) {
+            *at = bag + place;
+            return all;
+        }
+        place += all;
+    }
+    fail();
+    return 0;
+}
+
+/* The same record of connection 200 and its topic /imu/dat2. */
+static void rename_record(char *record, size_t size)
+{
+    for (size_t i = 0; i + 9 <= size; i++) {
+        if (memcmp(record + i, "conn=", 5) == 0)
+            record[i + 5] = (char)200;
+        if (memcmp(record + i, "/imu/data", 9) == 0)
+            record[i + 8] = '2';
+    }
+}
+
+/* Behind the part that is looked at, a second sensor begins in a bag without index. */
+static void test_second_topic_later(void **state)
+{
+    (void)state;
+    enum { MESSAGES = 52000 }; /* above 16 MiB */
+    const char *connection, *message, *head;
+    size_t size;
+    char *bag = bag_bytes(BAGS "outside.bag", &size);
+    const size_t begin = 13 + find_record(bag, size, 3, "index_pos", &head);
+    const size_t first = find_record(bag, size, 7, "sensor_msgs/Imu", &connection);
+    const size_t each = find_record(bag, size, 2, "sensor", &message);
+    const size_t all = begin + 2 * first + (MESSAGES + 1) * each;
+    char *long_bag = malloc(all), *at = long_bag;
+    assert_non_null(long_bag);
+    assert_true(MESSAGES * each > (16 << 20) + 1000);
+    memcpy(at, bag, begin);
+    memcpy(at += begin, connection, first);
+    at += first;
+    for (int i = 0; i < MESSAGES; i++, at += each)
+        memcpy(at, message, each);
+    memcpy(at, connection, first);
+    rename_record(at, first);
+    memcpy(at += first, message, each);
+    rename_record(at, each);
+    for (int asked = 0; asked < 2; asked++) {
+        static double values[BAG_COLUMNS][1024];
+        imk_log_settings settings = imk_log_default();
+        imk_log_reader *reader;
+        imk_error error;
+        double *to[BAG_COLUMNS];
+        size_t rows = 1, total = 0;
+        for (int c = 0; c < BAG_COLUMNS; c++)
+            to[c] = values[c];
+        settings.topic = asked ? "/imu/data" : NULL;
+        CHECK_OK(imk_log_open_memory(long_bag, all, &settings, &reader, &error));
+        imk_status status = IMK_OK;
+        while (status == IMK_OK && rows > 0) {
+            status = imk_log_read(reader, 1024, to, &rows, &error);
+            total += status == IMK_OK ? rows : 0;
+        }
+        assert_int_equal(total, MESSAGES);
+        CHECK_STATUS(status, asked ? IMK_OK : IMK_ERROR_NAME_UNKNOWN);
+        if (!asked) {
+            assert_string_equal(error.found, "a second sensor, /imu/dat2, begins later");
+            assert_string_equal(error.expected, "add --topic /imu/data (or --topic /imu/dat2)");
+        }
+        imk_log_close(reader);
+    }
+    free(long_bag);
+    free(bag);
+}
+
 /* ---- places ---- */
 
 /* Rows behind a place are those that follow the first of them, up to the last. */
@@ -422,6 +507,7 @@ int main(void)
         cmocka_unit_test(test_absent_and_unstamped),
         cmocka_unit_test(test_streams),
         cmocka_unit_test(test_two_topics),
+        cmocka_unit_test(test_second_topic_later),
         cmocka_unit_test(test_seek),
         cmocka_unit_test(test_no_seek_in_a_pipe),
         cmocka_unit_test(test_cut_short),
