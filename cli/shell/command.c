@@ -186,6 +186,31 @@ void *command_aligned(size_t size)
 /* The remedy of the log reader is "add --option value … (why)": the options are what stands
  * between.
  * "--columns with 7 names" asks for what only the user knows. */
+/* Does a text have this option of a command line, "--topic" or "--topic=NAME"? */
+static bool has_option(const char *text, const char *word)
+{
+    const size_t length = strcspn(word, "=");
+    if (strncmp(word, "--", 2) != 0 || length == 2)
+        return false;
+    for (const char *at = text; (at = strstr(at, "--")) != NULL; at += 2)
+        if (strncmp(at, word, length) == 0 && (at[length] == ' ' || at[length] == '\0'))
+            return true;
+    return false;
+}
+
+/* The command line without the options that these replace, which have a value each. */
+static const char *command_line_but(const char *options, size_t size, char *line)
+{
+    snprintf(line, size, "imukit");
+    for (int i = 1; i < kept_count; i++) {
+        if (!has_option(options, kept_arguments[i]))
+            append_word(line, size, kept_arguments[i]);
+        else if (!strchr(kept_arguments[i], '='))
+            i++;
+    }
+    return line;
+}
+
 int command_log_error(const imk_error *error, const char *path)
 {
     int code = command_error(error, path);
@@ -193,9 +218,11 @@ int command_log_error(const imk_error *error, const char *path)
     if (strncmp(options, "add --", 6) != 0 || strstr(options, " with "))
         return code;
     options += 4;
+    char added[sizeof error->expected], line[2000];
     const char *reason = strstr(options, " (");
-    fprintf(stderr, "Next: %s %.*s\n", command_line(),
-            (int)(reason ? reason - options : (long)strlen(options)), options);
+    snprintf(added, sizeof added, "%.*s", (int)(reason ? reason - options : (long)strlen(options)),
+             options);
+    fprintf(stderr, "Next: %s %s\n", command_line_but(added, sizeof line, line), added);
     return code;
 }
 

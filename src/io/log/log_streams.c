@@ -88,14 +88,15 @@ static imk_status refuse(const imk_log_reader *reader, size_t matches, imk_error
     else if (s->topic && matches == 0 && s->instance > 0)
         snprintf(found, sizeof found, "none of the %zu sensors is \"%.40s\" of instance %d",
                  readable, s->topic, s->instance - 1);
+    else if (readable == 1)
+        snprintf(found, sizeof found, "the log holds one sensor, and it is another one");
     else if (s->topic)
-        snprintf(found, sizeof found, "%s of the %zu sensor%s of the log %s called \"%.40s\"",
-                 matches > 0 ? "several" : "none", readable, readable == 1 ? "" : "s",
-                 matches > 0 ? "are" : "is", s->topic);
+        snprintf(found, sizeof found, "%s of the %zu sensors of the log %s called \"%.40s\"",
+                 matches > 0 ? "several" : "none", readable, matches > 0 ? "are" : "is", s->topic);
     else
-        snprintf(found, sizeof found, "%s of the %zu sensor%s of the log %s instance %d",
-                 matches > 0 ? "several" : "none", readable, readable == 1 ? "" : "s",
-                 matches > 0 ? "have" : "has", s->instance - 1);
+        snprintf(found, sizeof found, "%s of the %zu sensors of the log %s instance %d",
+                 matches > 0 ? "several" : "none", readable, matches > 0 ? "have" : "has",
+                 s->instance - 1);
     return imk_error_set(error, IMK_ERROR_NAME_UNKNOWN, "topic", found, expected);
 }
 
