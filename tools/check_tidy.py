@@ -40,13 +40,13 @@ def package(*names):
     return None
 
 
-def own_flags(name):
-    """What a file is compiled with besides; None when it cannot be."""
+def own_flags(name, text):
+    """What a file is compiled with besides; None when it cannot be. `text`: with all it includes."""
     for end, flags in [("avx2.c", ["-mavx2", "-mfma"]), ("fma.c", ["-mfma"]),
                        ("avx512.c", ["-mavx512f", "-mavx512dq"])]:
         if name.endswith(end):
             return flags
-    if name.startswith("campaign_hdf5"):
+    if "#include <hdf5.h>" in text:
         return package("hdf5-serial", "hdf5")
     return package("mpi-c") if name.endswith("_mpi.c") else []
 
@@ -86,7 +86,8 @@ def stale(files, deep):
     defines = re.compile(r"^\w[\w *]*\b(" + "|".join(modelled) + r")\(", re.MULTILINE)
     texts, found = Texts(), {}
     for file in files:
-        flags = own_flags(file.name)
+        text = texts.all_of(file)
+        flags = own_flags(file.name, text)
         if flags is None:
             continue
         analyzer = f"max-nodes={225000 if deep else 10000}"
@@ -94,7 +95,7 @@ def stale(files, deep):
             analyzer += f",model-path={MODELS}"
         flags = ["-std=c17", "-Iinclude", "-Isrc", "-Icli", *WARNINGS, *flags,
                  "-Xclang", "-analyzer-config", "-Xclang", analyzer]
-        whole = "\0".join([*flags, texts.all_of(file)]).encode()
+        whole = "\0".join([*flags, text]).encode()
         key = hashlib.sha256(version + rules + whole).hexdigest()
         if not (PASSED / key).exists():
             # clang 14 takes va_start and va_copy for unknown functions in all files of a process but

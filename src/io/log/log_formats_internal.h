@@ -16,19 +16,19 @@
     ROW(npz, "npz", ".npz", ".npz", NULL, NULL, true)                                              \
     ROW(mat, "mat", ".mat", ".mat", NULL, NULL, true)                                              \
     ROW(hdf5, "hdf5", "HDF5", ".h5 .hdf5", "\x89HDF\r\n\x1a\n", NULL, true)                        \
-    ROW(ulog, "ulog", "PX4 ULog", ".ulg", "ULog", NULL, false)                                     \
-    ROW(dataflash, "dataflash", "ArduPilot .bin", ".bin .BIN", "\xA3\x95", NULL, false)            \
-    ROW(novatel, "novatel", "NovAtel log", "", NULL, NULL, false)                                  \
-    ROW(sbg, "sbg", "sbgECom log", "", NULL, NULL, false)                                          \
-    ROW(ubx, "ubx", "UBX log", ".ubx", NULL, NULL, false)                                          \
-    ROW(vectornav, "vectornav", "VectorNav log", "", NULL, NULL, false)                            \
-    ROW(described, "binary", "binary records (--binary)", "", NULL, NULL, false)                   \
     ROW(bag, "bag", "ROS 1 bag", ".bag", "#ROSBAG V2", NULL, true)                                 \
     ROW(mcap, "mcap", "MCAP", ".mcap",                                                             \
         "\x89"                                                                                     \
         "MCAP0\r\n",                                                                               \
         NULL, true)                                                                                \
-    ROW(rosbag2, "rosbag2", "rosbag2", ".db3", "SQLite format 3", NULL, true)
+    ROW(rosbag2, "rosbag2", "rosbag2", ".db3", "SQLite format 3", NULL, true)                      \
+    ROW(ulog, "ulog", "PX4 ULog", ".ulg", "ULog", NULL, false)                                     \
+    ROW(dataflash, "dataflash", "ArduPilot .bin", ".bin .BIN", "\xA3\x95", NULL, false)            \
+    ROW(novatel, "novatel", "NovAtel", "", NULL, NULL, false)                                      \
+    ROW(sbg, "sbg", "sbgECom", "", NULL, NULL, false)                                              \
+    ROW(ubx, "ubx", "UBX", ".ubx", NULL, NULL, false)                                              \
+    ROW(vectornav, "vectornav", "VectorNav", "", NULL, NULL, false)                                \
+    ROW(described, "binary", "records described by --binary", "", NULL, NULL, false)
 
 /* What a format sees of a log that is written. */
 typedef struct imki_log_output {

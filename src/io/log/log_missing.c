@@ -27,7 +27,7 @@ static const imki_log_kind *misfit(const imki_log_layout_read *layout, const imk
     bool fits = false;
     for (size_t i = 0; i < IMKI_LOG_KINDS; i++) {
         const imki_log_kind *k = &imki_log_kinds[i];
-        if (!k->option || strcmp(k->option, asked->option) != 0)
+        if (!k->option || !asked->option || strcmp(k->option, asked->option) != 0)
             continue;
         fits = fits || imki_log_unit_fits(k, unit);
         for (size_t j = 0; j < layout->column_count; j++) {

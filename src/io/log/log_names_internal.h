@@ -29,7 +29,7 @@ typedef struct imki_log_name {
 enum { IMKI_LOG_KINDS = 7 };
 extern const imki_log_kind imki_log_kinds[IMKI_LOG_KINDS];
 
-/* @param name  without the unit in brackets */
-imki_log_name imki_log_name_of(const char *name);
+/* @param text  without the unit in brackets */
+imki_log_name imki_log_name_of(const char *text);
 
 #endif

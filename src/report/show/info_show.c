@@ -267,7 +267,7 @@ static void show_data(const imk_info_log *info, const imk_info_file *file, const
     for (size_t i = 0; i < file->stream_count; i++)
         stream_data(&file->stream[i], result);
     imk_result_end(result);
-    if (imki_begin_object(result, "record", info != NULL)) {
+    if (imki_begin_object(result, "record", info != NULL) && info) {
         imk_result_text(result, "topic", chosen[0] ? chosen : NULL);
         time_data(info, result);
         imk_result_text(result, "motion", motion_keys[info->motion]);

@@ -103,7 +103,7 @@ static imk_status add_unit(reading *r, const position *at, const imki_mat_head *
     const size_t length = strlen(at->group), own = sizeof units - 1;
     const char *parent = length >= own ? at->group + length - own : "";
     imki_mat_tag tag = {.type = 0};
-    unsigned char text[80];
+    unsigned char text[80] = {0};
     if (strcmp(parent, units) != 0 || r->unit_count == UNITS_MAX ||
         (parent > at->group && parent[-1] != '.'))
         return IMK_OK;

@@ -118,7 +118,7 @@ static imk_status put(imki_log_output *log, const imki_ros_gathered *bytes)
 static imk_status close_chunk(imki_log_output *log)
 {
     bag_writer *bag = log->state;
-    imki_ros_gathered head = {NULL}, index = {NULL};
+    imki_ros_gathered head = {.bytes = NULL}, index = {.bytes = NULL};
     if (bag->messages == 0)
         return IMK_OK;
     size_t length = open_length(&bag->index);
@@ -203,7 +203,7 @@ imk_status imki_bag_create(imki_log_output *log, const char *path, imk_error *er
 void imki_bag_begin(imki_log_output *log)
 {
     bag_writer *bag = log->state;
-    imki_ros_gathered head = {NULL};
+    imki_ros_gathered head = {.bytes = NULL};
     imki_ros_gather_bytes(&head, "#ROSBAG V2.0\n", MAGIC);
     put_head(bag, &head, 0);
     if (put(log, &head) == IMK_ERROR_MEMORY)
@@ -233,7 +233,7 @@ imk_status imki_bag_write(imki_log_output *log, const char *bytes, size_t size, 
 imk_status imki_bag_end(imki_log_output *log, imk_error *error)
 {
     bag_writer *bag = log->state;
-    imki_ros_gathered head = {NULL}, connection = {NULL};
+    imki_ros_gathered head = {.bytes = NULL}, connection = {.bytes = NULL};
     imk_status status = imki_ros_writer_check(&bag->writer, error);
     if (status != IMK_OK)
         return status;

@@ -155,7 +155,7 @@ static bool give(const imki_mcap_record *record, imki_ros_message *message)
 static imk_status enter_chunk(imki_mcap *mcap, imki_mcap_record *record, imk_error *error)
 {
     imki_ros_log *log = mcap->log;
-    bool whole;
+    bool whole = false;
     const imk_status status = imki_mcap_need(log, record, &whole, error);
     if (status != IMK_OK)
         return status;
