@@ -101,11 +101,11 @@ static imk_status add_unit(reading *r, const position *at, const imki_mat_head *
 {
     static const char units[] = "units";
     const size_t length = strlen(at->group), own = sizeof units - 1;
-    const char *parent = length >= own ? at->group + length - own : "";
+    const size_t before = length >= own ? length - own : 0; /* what stands before "units" */
     imki_mat_tag tag = {.type = 0};
     unsigned char text[80] = {0};
-    if (strcmp(parent, units) != 0 || r->unit_count == UNITS_MAX ||
-        (parent > at->group && parent[-1] != '.'))
+    if (strcmp(at->group + before, units) != 0 || r->unit_count == UNITS_MAX ||
+        (before > 0 && at->group[before - 1] != '.'))
         return IMK_OK;
     imk_status status = imki_mat_tag_read(&r->bytes, head->content, end, &tag, error);
     const bool wide = tag.type == IMKI_MAT_UINT16 || tag.type == IMKI_MAT_UTF16;
@@ -117,8 +117,8 @@ static imk_status add_unit(reading *r, const position *at, const imki_mat_head *
     unit_text *unit = &r->units[r->unit_count++];
     *unit = (unit_text){.unit = ""};
     imki_copy_text(unit->name, sizeof unit->name, at->name);
-    if (parent > at->group)
-        snprintf(unit->group, sizeof unit->group, "%.*s", (int)(parent - at->group - 1), at->group);
+    if (before > 0)
+        snprintf(unit->group, sizeof unit->group, "%.*s", (int)before - 1, at->group);
     for (size_t i = 0; i < tag.size / width && i + 1 < sizeof unit->unit; i++)
         unit->unit[i] = (char)text[width * i + (width == 2 && r->bytes.swapped)];
     return IMK_OK;
