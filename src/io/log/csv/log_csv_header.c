@@ -103,7 +103,7 @@ static void take_scale(imki_log_piece line, const char *key, double *scale)
 {
     double value;
     const size_t length = strlen(key);
-    if (!starts(line, key) || line.begin[length] != ',')
+    if (!starts(line, key) || line.begin + length == line.end || line.begin[length] != ',')
         return;
     const imki_log_piece number = {line.begin + length + 1, line.end};
     if (imki_log_piece_is_number(number, &value) && value > 0)
@@ -116,13 +116,13 @@ static imk_status read_gcsv(imk_log_reader *reader, imki_log_piece *line, bool *
 {
     do {
         const imk_status status = imki_csv_line(&reader->text, line, whole, found, NULL, error);
-        if (status != IMK_OK)
+        if (status != IMK_OK || !*found)
             return status;
         take_scale(*line, "tscale", &scales->time);
         take_scale(*line, "gscale", &scales->gyro);
         take_scale(*line, "ascale", &scales->accel);
         take_scale(*line, "mscale", &scales->mag);
-    } while (*found && !starts(*line, "t,") && !starts(*line, "time,"));
+    } while (!starts(*line, "t,") && !starts(*line, "time,"));
     return IMK_OK;
 }
 
