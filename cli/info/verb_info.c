@@ -31,14 +31,13 @@ static const char *next_command(const imk_info_log *info, const char *path, char
 {
     static const char *const own[] = {"--full", "--json", NULL};
     char line[2000];
+    const imk_info_next next = info ? imk_info_log_next(info) : IMK_INFO_NEXT_NONE;
     if (command_is_stream(path))
         return NULL;
-    if (!info)
-        snprintf(text, size, "%s --topic TOPIC", command_line());
-    else if (info->motion == IMK_INFO_REST)
+    if (next == IMK_INFO_NEXT_IDENTIFY)
         snprintf(text, size, "%s -o model.yaml",
                  command_line_as("identify", own, sizeof line, line));
-    else if (info->motion == IMK_INFO_POSES)
+    else if (next == IMK_INFO_NEXT_CALIBRATE)
         snprintf(text, size, "%s --procedure multiposition -o model.yaml",
                  command_line_as("calibrate", own, sizeof line, line));
     else
@@ -46,12 +45,14 @@ static const char *next_command(const imk_info_log *info, const char *path, char
     return text;
 }
 
+/* @param whole  it was read without an error, so that others can read it, too */
 static int show(const info_options *o, const imk_info_log *info, const imk_info_file *file,
-                const char *path)
+                const char *path, bool whole)
 {
     char next[2200];
     imk_result *result = show_begin("info");
-    imk_show_info_log(info, file, path, next_command(info, path, next, sizeof next), result);
+    imk_show_info_log(info, file, path, whole ? next_command(info, path, next, sizeof next) : NULL,
+                      result);
     const show_options options = {.json = o->json};
     return show_end(result, &options, EXIT_DONE);
 }
@@ -74,7 +75,7 @@ static int look(const info_options *o, imk_log_reader *reader, imk_info_file *fi
     const imk_findings none = {.count = 0};
     int code = -1;
     if (info && info->rows_read > 0)
-        code = show(o, info, file, path);
+        code = show(o, info, file, path, status == IMK_OK);
     if (status != IMK_OK)
         code = log_input_tell(path, info ? &info->findings : &none, status, &error);
     imk_info_log_free(info);
@@ -94,9 +95,13 @@ static int list(const info_options *o, const char *path, const imk_log_settings 
         return command_log_error(why, path);
     file->format = format->title;
     file->stream_count = file->stream_count < STREAMS_MAX ? file->stream_count : STREAMS_MAX;
-    const int code = show(o, NULL, file, path);
+    const int code = show(o, NULL, file, path, false);
     const bool asked = settings->topic || settings->instance > 0;
-    return asked || why->status == IMK_ERROR_EMPTY ? command_log_error(why, path) : code;
+    if (asked || why->status == IMK_ERROR_EMPTY)
+        return command_log_error(why, path);
+    if (!o->json)
+        printf("Choose one: %s --topic TOPIC\n", command_line());
+    return code;
 }
 
 static int inspect(const info_options *o, const char *path)

@@ -32,6 +32,13 @@ typedef struct imk_info_file {
     const imk_log_stream *stream; /**< `stream_count` of them */
     const imk_log_stream *chosen; /**< the one whose rows were read; NULL: none was */
 } imk_info_file;
+/** What to do with a log next, by what is in it. */
+typedef enum imk_info_next {
+    IMK_INFO_NEXT_NONE = 0, /**< nothing is sure to fit */
+    IMK_INFO_NEXT_IDENTIFY,
+    IMK_INFO_NEXT_CALIBRATE /**< with the procedure multiposition */
+} imk_info_next;
+IMK_API imk_info_next imk_info_log_next(const imk_info_log *info);
 /** Show what is in a log: its sensors, times, columns and motion.
  *  @param info  NULL: no rows were read
  *  @param next  command to run next; NULL: none is suggested */

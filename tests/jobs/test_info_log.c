@@ -129,6 +129,54 @@ static void clipped(size_t row, double *v)
     v[3] = 0.5;
 }
 
+/* A steady 100 deg/s; noise of 3 deg/s at rest; forces about nothing; a value in every tenth row
+ * only of accel y. */
+static void turning(size_t row, double *v)
+{
+    at_rest(row, v);
+    v[3] += 1.745;
+}
+
+static void noisy(size_t row, double *v)
+{
+    at_rest(row, v);
+    v[1] = 0.052 * noise(row, 0);
+}
+
+static void weightless(size_t row, double *v)
+{
+    at_rest(row, v);
+    v[6] += 9.8;
+}
+
+static void sparse(size_t row, double *v)
+{
+    at_rest(row, v);
+    v[0] = row % 10 == 0 ? v[0] : (double)NAN;
+    v[5] = row % 10 == 0 ? v[5] : (double)NAN;
+}
+
+static void check_motion(void (*make)(size_t, double *), imk_info_motion due)
+{
+    made_record m = record_of(20000, make);
+    imk_info_log *info = look_at(&m, false);
+    assert_int_equal(info->motion, due);
+    imk_info_log_free(info);
+}
+
+/* Windows with holes show no motion; columns without them have their figures all the same. */
+static void test_holes(void **state)
+{
+    (void)state;
+    made_record m = record_of(20000, sparse);
+    imk_info_log *info = look_at(&m, false);
+    assert_int_equal(info->motion, IMK_INFO_UNKNOWN);
+    CHECK_RELATIVE(info->channel[4].scatter, 0.01, 0.03);
+    assert_true(isnan(info->channel[5].scatter));
+    assert_int_equal(info->channel[5].finite, 2000);
+    imk_info_log_free(info);
+}
+
 static void test_figures(void **state)
 {
     (void)state;
@@ -183,6 +231,9 @@ static void test_motion(void **state)
     info = look_at(&moved, false);
     assert_int_equal(info->motion, IMK_INFO_MOVES);
     imk_info_log_free(info);
+    check_motion(turning, IMK_INFO_MOVES);
+    check_motion(noisy, IMK_INFO_REST);
+    check_motion(weightless, IMK_INFO_REST);
     /* Without gyros and accelerometers nothing is said. */
     made_record other = record_of(1000, at_rest);
     other.columns = 1;
@@ -247,9 +298,10 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_figures), cmocka_unit_test(test_clipping),
-        cmocka_unit_test(test_motion),  cmocka_unit_test(test_a_long_record),
-        cmocka_unit_test(test_full),    cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_figures),       cmocka_unit_test(test_clipping),
+        cmocka_unit_test(test_motion),        cmocka_unit_test(test_holes),
+        cmocka_unit_test(test_a_long_record), cmocka_unit_test(test_full),
+        cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

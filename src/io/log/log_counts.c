@@ -58,6 +58,14 @@ static imk_status by_device(const counted *c, const imk_log_settings *s, double 
     if (status == IMK_OK) {
         *per_count = found.per_count;
         *zero = found.zero;
+    } else if (status == IMK_ERROR_KEY_MISSING && c->range_option) {
+        char field[32], expected[512] = "";
+        snprintf(field, sizeof field, "%s", c->range_option + 2);
+        if (error)
+            snprintf(expected, sizeof expected, "add %s RANGE (%.400s)", c->range_option,
+                     error->expected);
+        return imk_error_set(error, IMK_ERROR_CONFLICT, field,
+                             "the device has several full scales, and none is stated", expected);
     } else if (error && strcmp(error->field, "range") == 0 && c->range_option) {
         snprintf(error->field, sizeof error->field, "%s", c->range_option + 2);
     }
@@ -94,9 +102,12 @@ imk_status imki_log_counts_apply(const imk_log_settings *settings, imk_log_colum
     if (status == IMK_ERROR_UNSUPPORTED && column->quantity == IMK_QUANTITY_TEMPERATURE)
         return IMK_OK; /* it stays in counts */
     if (status != IMK_OK) {
+        /* What lacks its unit here is an option, not a column. */
+        if (error && status == IMK_ERROR_UNIT_MISSING)
+            error->status = IMK_ERROR_SYNTAX;
         if (error && c.scale)
             snprintf(error->field, sizeof error->field, "%s", c.scale_option + 2);
-        return status;
+        return status == IMK_ERROR_UNIT_MISSING ? IMK_ERROR_SYNTAX : status;
     }
     *offset = zero;
     column->unit = imk_unit_of(c.unit);

@@ -37,6 +37,12 @@ static imk_status check_settings(const imk_log_settings *settings, imk_error *er
                              settings->gyro_range ? "gyro-range" : "accel-range",
                              "it is the full scale of a device, and none is named",
                              "add --device PART, or state --gyro-scale, --accel-scale");
+    if ((settings->gyro_range && settings->gyro_scale) ||
+        (settings->accel_range && settings->accel_scale))
+        return imk_error_set(
+            error, IMK_ERROR_CONFLICT,
+            settings->gyro_range && settings->gyro_scale ? "gyro-scale" : "accel-scale",
+            "the range of the device says what a count is, too", "leave one of the two out");
     if (settings->binary && settings->format && strcmp(settings->format, "binary") != 0)
         return imk_error_set(error, IMK_ERROR_CONFLICT, "binary",
                              "--binary is the format of the file, and --format states another",

@@ -21,6 +21,7 @@ typedef struct imki_info_window {
 /* Sums of a column. */
 typedef struct imki_info_sums {
     double sum, squares;                       /* of the window at present */
+    bool hole;                                 /* in the window: a value that is none */
     double total;                              /* of all rows */
     double within;                             /* sum of squares about the means of windows */
     size_t degrees;                            /* of it */

@@ -16,6 +16,7 @@ static const double rate_change = 5e-3;    /* [rad/s], 0.3 deg/s */
 static const double force_change = 0.1;    /* [m/s^2] */
 static const double rate_scatter = 0.1;    /* [rad/s], above the noise of any sensor used at rest */
 static const double force_scatter = 1.0;   /* [m/s^2] */
+static const double rate_most = 0.35;      /* [rad/s], 20 deg/s: more than any zero offset */
 static const double scatter_ratio = 5;     /* over that of the quiet windows */
 static const double same_attitude = 0.866; /* cosine of 30 deg, beyond what a vehicle that speeds
                                               up and turns shows */
@@ -36,20 +37,27 @@ static double quiet_scatter(const imki_info_rows *r, int axis, double *sorted)
     return sorted[r->window_count / 5];
 }
 
-/* Of counts without a sensitivity: changes in scatters. */
+/* The change of a mean may be what a sensor does by itself and four times what white noise of the
+ * scatter does. Of counts without a sensitivity the former is not known: some steps. */
 static bool axis_rests(const imki_info_rows *r, size_t k, int axis, double quiet)
 {
     const imki_info_window *w = &r->window[k];
     const int t = triad(axis);
     const double step = r->info->channel[r->axis[axis]].step;
-    const double change = r->counts[t] ? quiet + 2 * step : t == 0 ? rate_change : force_change;
+    const double noise = 4 * quiet * sqrt(2 / (double)r->window_rows);
+    const double change = noise + (r->counts[t] ? quiet + 2 * step
+                                   : t == 0     ? rate_change
+                                                : force_change);
+    const double mean = t == 0 && !r->counts[t] ? fabs(w->mean[axis]) : 0;
     const double most = r->counts[t] ? HUGE_VAL : t == 0 ? rate_scatter : force_scatter;
     const bool stays =
         k == 0 || !w->follows || r->stride > 1 || fabs(w->mean[axis] - w[-1].mean[axis]) <= change;
-    return stays && w->scatter[axis] <= scatter_ratio * quiet + step && w->scatter[axis] <= most;
+    return stays && mean <= rate_most && w->scatter[axis] <= scatter_ratio * quiet + step &&
+           w->scatter[axis] <= most;
 }
 
-/* The specific force as a direction; false: it is none of three axes in physical units. */
+/* The specific force as a direction; false: it is none of three axes in physical units, or not
+ * about gravity, without which its direction is no attitude. */
 static bool direction(const imki_info_rows *r, size_t k, double unit[3])
 {
     double square = 0;
@@ -61,7 +69,7 @@ static bool direction(const imki_info_rows *r, size_t k, double unit[3])
     }
     for (int a = 0; a < 3; a++)
         unit[a] /= sqrt(square);
-    return square > 0;
+    return square > 25 && square < 225; /* half and one and a half g */
 }
 
 /* Attitudes of windows at rest that follow one another. */

@@ -13,6 +13,7 @@ void imki_info_rows_begin(imki_info_rows *r)
     for (size_t c = 0; c < r->info->channel_count; c++) {
         r->sums[c].sum = r->sums[c].squares = 0;
         r->sums[c].run_low = r->sums[c].run_high = 0;
+        r->sums[c].hole = false;
     }
 }
 
@@ -28,6 +29,7 @@ static void add_value(imk_info_channel *channel, imki_info_sums *s, double value
 {
     if (!isfinite(value)) {
         s->run_low = s->run_high = 0;
+        s->hole = true;
         return;
     }
     if (channel->finite == 0)
@@ -48,26 +50,31 @@ static void add_value(imk_info_channel *channel, imki_info_sums *s, double value
     s->squares += (value - channel->mean) * (value - channel->mean);
 }
 
+/* Columns with a hole give nothing to the window; without a sensor's axis it shows no motion. */
 static void end_window(imki_info_rows *r)
 {
     const double n = (double)r->window_rows;
     imki_info_window w = {.follows = r->follows};
+    bool whole = true;
     for (size_t c = 0; c < r->info->channel_count; c++) {
         imki_info_sums *s = &r->sums[c];
         const double mean = s->sum / n, within = s->squares - n * mean * mean;
-        if (within > 0)
-            s->within += within;
-        s->degrees += r->window_rows - 1;
         for (int a = 0; a < IMKI_INFO_AXES; a++)
             if (r->axis[a] == (int)c) {
+                whole = whole && !s->hole;
                 w.mean[a] = r->info->channel[c].mean + mean;
                 w.scatter[a] = within > 0 ? sqrt(within / (n - 1)) : 0;
             }
+        if (!s->hole) {
+            s->within += within > 0 ? within : 0;
+            s->degrees += r->window_rows - 1;
+        }
         s->sum = s->squares = 0;
+        s->hole = false;
     }
     r->in_window = 0;
-    r->follows = true;
-    if (r->passed++ % r->stride != 0)
+    r->follows = whole;
+    if (!whole || r->passed++ % r->stride != 0)
         return;
     if (r->window_count == IMKI_INFO_WINDOWS) { /* every second one makes room */
         for (size_t k = 0; 2 * k < r->window_count; k++)
@@ -82,24 +89,16 @@ void imki_info_rows_add(imki_info_rows *r, size_t rows, double *const *column)
 {
     imk_info_log *info = r->info;
     for (size_t row = 0; row < rows; row++) {
-        bool finite = true;
         for (size_t c = 0; c < info->channel_count; c++) {
             const double value = column[c][row];
             imk_info_channel *channel = &info->channel[c];
             if (channel->finite == 0 && isfinite(value))
                 channel->mean = value; /* for now: what sums are taken about */
             add_value(channel, &r->sums[c], value);
-            finite = finite && (isfinite(value) || channel->column.label);
             if (r->sampled < IMKI_INFO_SAMPLE && r->sample[c])
                 r->sample[c][r->sampled] = value;
         }
         r->sampled += r->sampled < IMKI_INFO_SAMPLE;
-        if (!finite) { /* a window has all its rows */
-            r->in_window = 0;
-            for (size_t c = 0; c < info->channel_count; c++)
-                r->sums[c].sum = r->sums[c].squares = 0;
-            continue;
-        }
         if (++r->in_window == r->window_rows)
             end_window(r);
     }

@@ -117,8 +117,11 @@ static void show_times(const imk_info_log *info, imk_result *result)
         imk_table_row(table, "rows\t%s%llu, %s (%zu read, in %zu place%s)", about,
                       (unsigned long long)info->rows, basis_words[info->rows_from], info->rows_read,
                       info->places, info->places == 1 ? "" : "s");
-    imk_table_row(table, "duration\t%s, %s", imki_duration(info->duration).text,
-                  basis_words[info->duration_from]);
+    if (info->duration < 0)
+        imk_table_row(table, "duration\tnot known: the last time is before the first");
+    else
+        imk_table_row(table, "duration\t%s, %s", imki_duration(info->duration).text,
+                      basis_words[info->duration_from]);
     if (info->time_origin != 0)
         imk_table_row(table, "clock\tbegins at %.3f s, which is subtracted", info->time_origin);
     else if (isfinite(info->first_time))
@@ -233,6 +236,30 @@ static void channel_data(const imk_info_channel *c, imk_result *result)
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
+/* Gyros or accelerometers in counts, whose unit nobody stated. */
+static bool is_counted(const imk_info_log *info)
+{
+    const imk_dimension count = imk_unit_of("count").dimension;
+    bool any = false;
+    for (size_t i = 0; i < info->channel_count; i++) {
+        const imk_log_column *c = &info->channel[i].column;
+        any = any || ((c->quantity == IMK_QUANTITY_ANGULAR_RATE ||
+                       c->quantity == IMK_QUANTITY_SPECIFIC_FORCE) &&
+                      imk_dimension_equal(c->unit.dimension, count));
+    }
+    return any;
+}
+
+imk_info_next imk_info_log_next(const imk_info_log *info)
+{
+    const bool times = info->duration > 0 && 100 * info->reversals < info->rows_read;
+    if (is_counted(info) || !times)
+        return IMK_INFO_NEXT_NONE;
+    return info->motion == IMK_INFO_REST    ? IMK_INFO_NEXT_IDENTIFY
+           : info->motion == IMK_INFO_POSES ? IMK_INFO_NEXT_CALIBRATE
+                                            : IMK_INFO_NEXT_NONE;
+}
+
 static void show_motion(const imk_info_log *info, imk_result *result)
 {
     const char *where = info->whole ? "" : " in the places read";
@@ -251,8 +278,14 @@ static void show_motion(const imk_info_log *info, imk_result *result)
                         100 * info->resting, where);
         break;
     case IMK_INFO_UNKNOWN:
+        imk_result_line(result, "Whether the sensor rests is not known: there are no gyros and "
+                                "accelerometers, or less than three seconds without holes.");
         break;
     }
+    if (is_counted(info))
+        imk_result_line(result,
+                        "The readings are counts: state --device PART with --gyro-range and "
+                        "--accel-range, or --gyro-scale and --accel-scale.");
 }
 
 static void show_data(const imk_info_log *info, const imk_info_file *file, const char *name,

@@ -124,7 +124,14 @@ static void test_refusals(void **state)
     settings.gyro_range = "3000 deg/s";
     refuse(counts, &settings, IMK_ERROR_RANGE, "gyro-range", "2000 deg/s");
     settings.gyro_range = NULL;
-    refuse(counts, &settings, IMK_ERROR_KEY_MISSING, "gyro-range", "");
+    refuse(counts, &settings, IMK_ERROR_CONFLICT, "gyro-range", "add --gyro-range RANGE (one of");
+    settings.gyro_scale = "16.4 LSB/(deg/s)";
+    settings.gyro_range = "2000 deg/s";
+    refuse(counts, &settings, IMK_ERROR_CONFLICT, "gyro-scale", "leave one of the two out");
+    settings.gyro_scale = NULL;
+    settings.gyro_range = "2000";
+    refuse(counts, &settings, IMK_ERROR_SYNTAX, "gyro-range", "has no unit");
+    settings.gyro_range = NULL;
     settings.device = "no such part";
     refuse(counts, &settings, IMK_ERROR_NAME_UNKNOWN, "device", "");
 }
