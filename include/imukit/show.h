@@ -38,6 +38,7 @@ typedef enum imk_info_next {
     IMK_INFO_NEXT_IDENTIFY,
     IMK_INFO_NEXT_CALIBRATE /**< with the procedure multiposition */
 } imk_info_next;
+/** What to do with a log next. */
 IMK_API imk_info_next imk_info_log_next(const imk_info_log *info);
 /** Show what is in a log: its sensors, times, columns and motion.
  *  @param info  NULL: no rows were read
