@@ -121,6 +121,11 @@ static const struct message {
      "{name}: {0.3g} % of the rows repeat the row before on all axes, so the sensor has {1.5g} Hz "
      "and the log {2.5g} Hz: all terms are wrong at short averaging times; log at the rate of the "
      "sensor, or keep new samples only"},
+    {"stamps:sparse",
+     "{name}: {0.3g} % of the rows have no value on any axis, at even distances, so the sensor has "
+     "{1.5g} Hz and the log {2.5g} Hz: white noise comes out too small by a factor of {3.3g}, and "
+     "all terms are wrong at short averaging times; write the rows that have values to a log of "
+     "their own"},
     {"packets",
      "{name}: {0.2g} % of the rows are the rows {1} before, written again on all axes, as a packet "
      "of {1} rows in place of the next one: white noise comes out wrong; find out where rows are "

@@ -258,6 +258,23 @@ static void hold(test_log *l, double ratio)
     l->rate *= ratio;
 }
 
+/* The gyros have values in every row of so many only, as a slower sensor in the same table has. */
+static void leave_blank(test_log *l, double every)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        for (int axis = 0; axis < 3 && i % (size_t)every != 0; axis++)
+            l->gyro[axis][i] = (double)NAN;
+}
+
+/* Rows of the gyros without values, at random. */
+static void lose_values(test_log *l, double share)
+{
+    for (size_t i = 0; i < l->rows; i++)
+        for (int axis = 0; axis < 3 && fmod(0.6180339887498949 * (double)(i * i), 1) < share;
+             axis++)
+            l->gyro[axis][i] = (double)NAN;
+}
+
 /* The first rows of every twentieth packet are those of the packet before. */
 static void repeat_packets(test_log *l, double packet)
 {
@@ -535,6 +552,33 @@ static void test_held_samples(void **context)
             check_told("stamps:held",
                        (fault[]){{round_values, digits[d]}, {hold, ratios[r]}, {NULL, 0}}, 98.5,
                        101.5, 1);
+}
+
+/* Values at even distances are those of a slower sensor; values lost at random are none. */
+static void test_blank_rows(void **context)
+{
+    (void)context;
+    static test_log l;
+    imk_even_record even;
+    imk_findings findings;
+    for (int every = 2; every <= 10; every += 4) {
+        make(&l, 3, ROWS, 100);
+        leave_blank(&l, every);
+        load(&l, &even, &findings);
+        const imk_finding *f = find(&findings, "stamps:sparse");
+        assert_non_null(f);
+        assert_string_equal(f->name, "gyro");
+        CHECK_RELATIVE(f->number[1], 100.0 / every, 0.01);
+        CHECK_RELATIVE(f->number[3], sqrt(every), 0.01);
+        imk_even_record_free(&even);
+    }
+    for (double share = 0.1; share < 0.7; share += 0.2) {
+        make(&l, 3, ROWS, 100);
+        lose_values(&l, share);
+        load(&l, &even, &findings);
+        assert_null(find(&findings, "stamps:sparse"));
+        imk_even_record_free(&even);
+    }
 }
 
 /* The number of rows in a packet, also where digits repeat by chance. */
@@ -847,6 +891,7 @@ int main(void)
         cmocka_unit_test(test_two_rates),
         cmocka_unit_test(test_doubled_rows),
         cmocka_unit_test(test_held_samples),
+        cmocka_unit_test(test_blank_rows),
         cmocka_unit_test(test_packets_written_again),
         cmocka_unit_test(test_replayed),
         cmocka_unit_test(test_rows_by_chance),

@@ -69,16 +69,29 @@ static size_t count_equal(size_t rows, const double *x, size_t lag, uint8_t *all
     return count;
 }
 
-static void count_windows(imki_repeat_counts *s, size_t rows, const uint8_t *all)
+static void count_windows(imki_windows *w, size_t rows, const uint8_t *counted)
 {
     for (size_t begin = FAR; begin + WINDOW <= rows; begin += WINDOW) {
-        double repeats = 0;
+        double count = 0;
         for (size_t i = begin; i < begin + WINDOW; i++)
-            repeats += all[i];
-        s->windows++;
-        s->sum += repeats;
-        s->square_sum += repeats * repeats;
+            count += counted[i];
+        w->windows++;
+        w->sum += count;
+        w->square_sum += count * count;
     }
+}
+
+/* Rows of a sensor without any value. */
+static void count_blanks(imki_repeat_counts *s, size_t rows, double *const *columns, size_t first,
+                         uint8_t *blank)
+{
+    memset(blank, 1, rows);
+    for (size_t c = 0; c < s->channels; c++) {
+        const double *x = columns[s->column[c]] + first;
+        for (size_t i = 0; i < rows; i++)
+            blank[i] &= x[i] != x[i];
+    }
+    count_windows(&s->blank, rows, blank);
 }
 
 /* Channels with noise of their own differ within some rows, so that this costs nothing. */
@@ -128,7 +141,8 @@ static void add_rows(imki_repeat_counts *s, size_t rows, double *const *columns,
         s->all[1] += all[1][i];
     }
     s->rows += rows - FAR;
-    count_windows(s, rows, all[0]);
+    count_windows(&s->held, rows, all[0]);
+    count_blanks(s, rows, columns, first, all[1]);
 }
 
 void imki_repeats_add(imki_repeats *r, size_t rows, double *const *columns)
@@ -187,11 +201,12 @@ static void tell_sensor(const imki_repeat_counts *s, const char *name, double dt
                         imk_findings *findings)
 {
     double chance;
-    if (s->channels == 0 || s->rows < LEAST || s->windows < 2)
+    const imki_windows *w = &s->held;
+    if (s->channels == 0 || s->rows < LEAST || w->windows < 2)
         return;
     const double n = (double)s->rows, held = held_of(s, &chance);
-    const double mean = s->sum / s->windows;
-    const double variance = s->square_sum / s->windows - mean * mean;
+    const double mean = w->sum / w->windows;
+    const double variance = w->square_sum / w->windows - mean * mean;
     const double by_chance = WINDOW * (1 - held) * chance * (1 - chance);
     const double share = (variance - by_chance) / (WINDOW * held * (1 - held));
     const bool beyond = held > held_told && held > errors_beyond * sqrt(held / n);
@@ -200,6 +215,23 @@ static void tell_sensor(const imki_repeat_counts *s, const char *name, double dt
     if (beyond && chance < chance_most && (regular || scattered))
         imki_find(findings, IMK_FINDING_WARNING, "stamps:held", name,
                   IMKI_NUMBERS(100 * held, (1 - held) / dt, 1 / dt));
+}
+
+/* Blank rows at even distances are those of a slower sensor; lost ones are at random, and their
+ * number in a window has the variance of a binomial distribution or more. The estimate of it by 32
+ * windows is below a quarter in one log of 1e5. */
+static void tell_blank(const imki_repeat_counts *s, const char *name, double dt,
+                       imk_findings *findings)
+{
+    const imki_windows *w = &s->blank;
+    const double windows_least = 32, told = 0.02, even = 0.25;
+    if (w->windows < windows_least)
+        return;
+    const double mean = w->sum / w->windows, share = mean / WINDOW;
+    const double variance = w->square_sum / w->windows - mean * mean;
+    if (share > told && share < 1 && variance < even * WINDOW * share * (1 - share))
+        imki_find(findings, IMK_FINDING_WARNING, "stamps:sparse", name,
+                  IMKI_NUMBERS(100 * share, (1 - share) / dt, 1 / dt, 1 / sqrt(1 - share)));
 }
 
 /* A channel that hardly ever changes is told by others, and may equal a second one by chance. */
@@ -249,6 +281,7 @@ void imki_repeats_tell(imki_repeats *r, const imk_log_column *columns, double dt
         imki_repeat_counts *s = &r->sensor[k];
         const char *name = k == 1 ? "accel" : r->others ? "columns" : "gyro";
         tell_sensor(s, name, dt, findings);
+        tell_blank(s, name, dt, findings);
         imki_packets_tell(&s->packets, s->channels, name, findings);
         imki_replay_tell(&s->replay, imki_packets_agreement(&s->packets), name, dt, findings);
         tell_copies(s, columns, findings);

@@ -11,14 +11,18 @@
 
 enum { IMKI_REPEAT_AXES = 8 };
 
+/* Windows of rows: number, and sums of what is counted in one and of its squares. */
+typedef struct imki_windows {
+    double windows, sum, square_sum;
+} imki_windows;
+
 /* What is counted of one sensor: rows whose channels equal those of a row before, [0] of the next
  * row before, [1] of one far enough to be equal by chance only. */
 typedef struct imki_repeat_counts {
     int column[IMK_LOG_COLUMNS_MAX];
     size_t channels, rows, all[2], equal[IMK_LOG_COLUMNS_MAX][2];
-    size_t stretches; /* of a long log, counted or not */
-    /* of windows of rows: number, and sums of the repeats in one and of their squares */
-    double windows, sum, square_sum;
+    size_t stretches;         /* of a long log, counted or not */
+    imki_windows held, blank; /* rows that repeat the one before; that have no value at all */
     bool differ[IMK_LOG_COLUMNS_MAX][IMK_LOG_COLUMNS_MAX]; /* of channels, the earlier one first */
     /* sums of products of the steps from row to row, of the first channels */
     double product[IMKI_REPEAT_AXES][IMKI_REPEAT_AXES];
@@ -36,7 +40,8 @@ void imki_repeats_start(imki_repeats *repeats, size_t count, const int *channel,
                         const imk_log_column *columns);
 /* Count in some rows of the log, one array for each column. */
 void imki_repeats_add(imki_repeats *repeats, size_t rows, double *const *columns);
-/* Tell of sensors that are slower than the log, of rows that are written again, and of columns that
+/* Tell of sensors that are slower than the log, whose samples are held or stand in every second row
+ * only, of rows that are written again, and of columns that
  * are copies.
  * @param columns  of the log  @param dt  of the log [s] */
 void imki_repeats_tell(imki_repeats *repeats, const imk_log_column *columns, double dt,
