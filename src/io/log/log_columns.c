@@ -329,7 +329,7 @@ static imk_status add_cell(imki_log_layout_read *layout, size_t index, imki_log_
     layout->factor[column] = cell->column.unit.scale;
     layout->offset[column] = cell->column.unit.offset;
     status = imki_log_counts_apply(settings, &layout->column[column], &layout->factor[column],
-                                   &layout->offset[column], error);
+                                   &layout->offset[column], &layout->most[column], error);
     if (status != IMK_OK)
         return status;
     if (cell->column.quantity == IMK_QUANTITY_TIME)

@@ -5,6 +5,7 @@
 
 #include "imukit/device_sensitivity.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -50,7 +51,7 @@ bool imki_log_counted(const imk_log_settings *settings, imk_quantity quantity)
 /* "BMI088 with a gyro range of 2000 deg/s": what the device has is found by the core, which knows
  * no options. */
 static imk_status by_device(const counted *c, const imk_log_settings *s, double *per_count,
-                            double *zero, imk_error *error)
+                            double *zero, double *most, imk_error *error)
 {
     imk_device_sensitivity found;
     const imk_status status =
@@ -58,6 +59,7 @@ static imk_status by_device(const counted *c, const imk_log_settings *s, double 
     if (status == IMK_OK) {
         *per_count = found.per_count;
         *zero = found.zero;
+        *most = ldexp(found.per_count, found.bits - 1);
     } else if (status == IMK_ERROR_KEY_MISSING && c->range_option) {
         char field[32], expected[512] = "";
         snprintf(field, sizeof field, "%s", c->range_option + 2);
@@ -73,7 +75,7 @@ static imk_status by_device(const counted *c, const imk_log_settings *s, double 
 }
 
 imk_status imki_log_counts_apply(const imk_log_settings *settings, imk_log_column *column,
-                                 double *factor, double *offset, imk_error *error)
+                                 double *factor, double *offset, double *most, imk_error *error)
 {
     counted c;
     double zero = 0;
@@ -98,7 +100,7 @@ imk_status imki_log_counts_apply(const imk_log_settings *settings, imk_log_colum
     const imk_status status =
         c.scale ? imk_count_scale_parse(c.scale, c.scale + strlen(c.scale),
                                         imk_unit_of(c.quantity).dimension, factor, error)
-                : by_device(&c, settings, factor, &zero, error);
+                : by_device(&c, settings, factor, &zero, most, error);
     if (status == IMK_ERROR_UNSUPPORTED && column->quantity == IMK_QUANTITY_TEMPERATURE)
         return IMK_OK; /* it stays in counts */
     if (status != IMK_OK) {
@@ -112,5 +114,29 @@ imk_status imki_log_counts_apply(const imk_log_settings *settings, imk_log_colum
     *offset = zero;
     column->unit = imk_unit_of(c.unit);
     column->unit_origin = c.scale ? IMK_UNIT_OF_SETTINGS : IMK_UNIT_OF_DEVICE;
+    return IMK_OK;
+}
+
+imk_status imki_log_counts_check(const imk_log_reader *reader, size_t rows, double *const *columns,
+                                 imk_error *error)
+{
+    const imki_log_layout_read *layout = &reader->layout;
+    const double rounding = 1 + 1e-9;
+    for (size_t c = 0; c < layout->column_count; c++) {
+        const double *value = columns[c], most = layout->most[c] * rounding;
+        char found[96];
+        if (!value || !(most > 0))
+            continue;
+        for (size_t i = 0; i < rows; i++) {
+            if (!(fabs(value[i] - layout->offset[c]) > most))
+                continue;
+            snprintf(found, sizeof found, "%.0f counts in row %zu are beyond the range of %.24s",
+                     (value[i] - layout->offset[c]) / layout->factor[c],
+                     reader->rows - rows + i + 1, reader->settings.device);
+            return imk_error_set(error, IMK_ERROR_CONFLICT, layout->column[c].name, found,
+                                 "where they were written without a sign, subtract 65536 "
+                                 "from those above 32767 (16 bits); or check --device");
+        }
+    }
     return IMK_OK;
 }

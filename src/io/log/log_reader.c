@@ -384,6 +384,8 @@ static imk_status read_block(imk_log_reader *reader, size_t max_rows, double *co
         *rows = imki_log_part_keep(reader, read, time, out);
     } while (status == IMK_OK && read > 0 && *rows == 0);
     finish_block(reader, *rows, time, columns);
+    if (status == IMK_OK)
+        status = imki_log_counts_check(reader, *rows, columns, error);
     if (status == IMK_OK && time)
         status = imki_log_pace_check(reader, *rows, time, read == 0, error);
     return status;

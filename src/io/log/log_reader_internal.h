@@ -42,6 +42,8 @@ typedef struct imki_log_layout_read {
     imk_log_column column[IMK_LOG_COLUMNS_MAX];
     double factor[IMK_LOG_COLUMNS_MAX]; /* per column: scale, with the sign of the axes */
     double offset[IMK_LOG_COLUMNS_MAX]; /* per column, added to factor times number */
+    double most[IMK_LOG_COLUMNS_MAX];   /* largest that the counts of a device give, before the
+                                           offset [SI]; 0: not known */
     int time_column;                    /* -1: none */
     bool has_increments;
     imki_log_missing missing;
@@ -77,12 +79,16 @@ imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
 
 /* log_counts.c: do the settings say what counts of a quantity are? */
 bool imki_log_counted(const imk_log_settings *settings, imk_quantity quantity);
+/* Refuse counts that the device cannot give: of the last `rows` rows, which reader->rows includes. */
+imk_status imki_log_counts_check(const imk_log_reader *reader, size_t rows, double *const *columns,
+                                 imk_error *error);
 /* Make a column of counts one of a physical unit, where the settings say what a count is: its unit,
- * and SI value = *factor * count + *offset. Other columns stay.
+ * and SI value = *factor * count + *offset, where *most is the largest *factor * count of a device.
+ * Other columns stay.
  * @return IMK_ERROR_CONFLICT (it is none of counts), or what imk_count_scale_parse() and
  *         imk_device_sensitivity_find() return */
 imk_status imki_log_counts_apply(const imk_log_settings *settings, imk_log_column *column,
-                                 double *factor, double *offset, imk_error *error);
+                                 double *factor, double *offset, double *most, imk_error *error);
 
 /* The message of what is missing once more, with what the rows show. */
 imk_status imki_log_missing_refuse(const imki_log_layout_read *layout, const imki_log_hints *hints,

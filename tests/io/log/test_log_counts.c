@@ -136,13 +136,33 @@ static void test_refusals(void **state)
     refuse(counts, &settings, IMK_ERROR_NAME_UNKNOWN, "device", "");
 }
 
+/* -1 of 16 bits, written without a sign. */
+static void test_unsigned(void **state)
+{
+    (void)state;
+    static const char text[] = "time [s],gyro_x\n0,1\n1,32767\n2,-32768\n3,65535\n";
+    imk_log_settings settings = imk_log_default();
+    double value[2][8], *columns[2] = {value[0], value[1]};
+    size_t rows;
+    imk_error error;
+    settings.device = "BMI270";
+    settings.gyro_range = "2000 deg/s";
+    imk_log_reader *reader = open_counts(text, &settings);
+    imk_status status = imk_log_read(reader, 8, columns, &rows, &error);
+    while (status == IMK_OK && rows > 0)
+        status = imk_log_read(reader, 8, columns, &rows, &error);
+    CHECK_STATUS(status, IMK_ERROR_CONFLICT);
+    assert_string_equal(error.field, "gyro_x");
+    assert_non_null(strstr(error.found, "65535 counts in row 4"));
+    imk_log_close(reader);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_by_scale),
-        cmocka_unit_test(test_by_device),
-        cmocka_unit_test(test_header_of_counts),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_by_scale),         cmocka_unit_test(test_by_device),
+        cmocka_unit_test(test_header_of_counts), cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_unsigned),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
