@@ -181,8 +181,8 @@ static const struct message {
      "{1} rows are too few to identify noise: at least 256 are needed; record minutes to hours"},
     {"moved",
      "the sensor was moved between {0.4g} s and {1.4g} s, so that {name} holds no noise that "
-     "could be identified; the longest part at rest is read by --after {2g}s --before "
-     "{3g}s"},
+     "could be identified; {3?}the longest part at rest is read by --after {2g}s --before "
+     "{3g}s{3!}no part of the log is without this: record it again at rest{?}"},
     {"no_model:outliers",
      "{name}: {0} of {1} samples are off the others by up to {2.5g} {other}, too many to be left "
      "out; if they are codes of lost samples, such as -32768, write nan in their place; " SKIP_IT},

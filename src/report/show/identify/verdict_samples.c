@@ -328,10 +328,16 @@ static void assess_moves(imk_verdict *v, const imk_identify_log *log)
         channels |= (uint64_t)(log->screen[c].moved.count > 0) << c;
     if (!m.moved)
         return;
-    imki_verdict_add(v, IMK_FINDING_FAILURE, "moved",
-                     "the sensor was moved, or had not settled, between %.4g s and %.4g s; the "
-                     "longest part without this is read by --after %gs --before %gs.",
-                     m.first, m.end, m.still_first, m.still_end);
+    if (m.still_end > m.still_first)
+        imki_verdict_add(v, IMK_FINDING_FAILURE, "moved",
+                         "the sensor was moved, or had not settled, between %.4g s and %.4g s; the "
+                         "longest part without this is read by --after %gs --before %gs.",
+                         m.first, m.end, m.still_first, m.still_end);
+    else
+        imki_verdict_add(v, IMK_FINDING_FAILURE, "moved",
+                         "the sensor was moved, or had not settled, between %.4g s and %.4g s, and "
+                         "no part of the log is without this: record it again at rest.",
+                         m.first, m.end);
     imki_verdict_about(v, &log->record, channels);
 }
 
