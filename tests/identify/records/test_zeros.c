@@ -96,6 +96,8 @@ static void test_sound(void **state)
     (void)state;
     static const double steps[] = {0.02, 0.1, 0.15, 0.3, 0.5, 0.8, 1, 1.3, 1.6, 2};
     for (uint64_t seed = 0; seed < 24; seed++) {
+        if (check_skips(seed, 5))
+            continue;
         const double level = 0.13 * (double)(seed % 8);
         make(seed, level, 0, seed % 3 ? 0 : 0.01);
         memcpy(clean, rate, sizeof rate);
@@ -129,6 +131,8 @@ static void test_sound_with_heavy_tails(void **state)
     (void)state;
     static const double steps[] = {0.04, 0.1, 0.12, 0.2, 0.3, 0.5, 0.8, 1};
     for (uint64_t seed = 0; seed < 16; seed++) {
+        if (check_skips(seed, 5))
+            continue;
         make_laplace(seed, 0.05 * (double)(seed % 4));
         memcpy(clean, rate, sizeof rate);
         for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
