@@ -33,6 +33,19 @@ bool imki_log_unit_fits(const imki_log_kind *kind, const imk_unit *unit);
 imk_status imki_log_unit_refuse(const imki_log_kind *kind, const imk_unit *unit, const char *field,
                                 imk_error *error);
 
+/* A time in two columns: whole seconds and what is beyond them. */
+typedef struct imki_log_time_parts {
+    size_t whole, rest; /* cells */
+    int64_t ticks;      /* [ns] of one of the rest */
+} imki_log_time_parts;
+
+/* Has the header such two, and no column of the whole time by an exact name? */
+bool imki_log_time_parts_find(const imki_log_piece *header, size_t count,
+                              imki_log_time_parts *parts);
+/* Refuse to take the seconds alone for the time. @return IMK_ERROR_COLUMN */
+imk_status imki_log_time_parts_refuse(const imki_log_piece *header, const imki_log_cell *cells,
+                                      size_t count, imk_error *error);
+
 /* The header that settings.map makes of one: columns that it does not name are "-".
  * @param text  holds the new names */
 imk_status imki_log_map(const char *map, const imki_log_piece *header, size_t count,

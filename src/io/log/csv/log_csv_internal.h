@@ -39,8 +39,9 @@ typedef struct imki_csv {
     uint64_t begin;             /* byte of the first row */
     imki_csv_header header;
     imki_csv_look look;
-    size_t time_cell; /* IMK_LOG_COLUMNS_MAX: none */
-    imk_error damage; /* of the first row that cannot be read */
+    size_t time_cell;          /* IMK_LOG_COLUMNS_MAX: none */
+    imki_log_time_parts parts; /* ticks 0: none */
+    imk_error damage;          /* of the first row that cannot be read */
 } imki_csv;
 
 typedef struct imki_csv_comment {

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Headers by which a text could be read as something else than it is: times in two columns, axes
+ * counted from 1, units that contradict each other, times of another unit than stated. */
+#include "check.h"
+
+#include "imukit/io.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { ROOM = 32, COLUMNS = 8 };
+
+static struct {
+    imk_status status;
+    size_t rows, columns;
+    imk_log_column column[COLUMNS];
+    double data[COLUMNS][ROOM];
+    size_t damaged;
+    char message[1400];
+} t;
+
+static void read_text(const char *text, const imk_log_settings *settings)
+{
+    imk_log_reader *reader = NULL;
+    imk_error error = {.status = IMK_OK};
+    double *data[IMK_LOG_COLUMNS_MAX] = {NULL};
+    memset(&t, 0, sizeof t);
+    for (size_t j = 0; j < COLUMNS; j++)
+        data[j] = t.data[j];
+    t.status = imk_log_open_memory(text, strlen(text), settings, &reader, &error);
+    if (t.status == IMK_OK)
+        t.status = imk_log_read(reader, ROOM, data, &t.rows, &error);
+    if (t.status == IMK_OK) {
+        t.columns = imk_log_column_count(reader);
+        for (size_t j = 0; j < t.columns && j < COLUMNS; j++)
+            t.column[j] = *imk_log_column_get(reader, j);
+        t.damaged = imk_log_findings_get(reader).damaged;
+    } else {
+        imk_error_text(&error, "log.csv", t.message, sizeof t.message);
+    }
+    imk_log_close(reader);
+}
+
+static void check_says(imk_status status, const char *words)
+{
+    if (t.status != status || !strstr(t.message, words))
+        fail_msg("%s: \"%s\" does not say \"%s\"", imk_status_name(t.status), t.message, words);
+}
+
+/* ------------------------------------------------------------------------- times in two columns */
+
+/* The second row is 10 ms behind the first, the third 1 s and 1 ns: exact as differences of whole
+ * nanoseconds, which the seconds of 1970 in a double do not hold. */
+static void times_in_two_columns_are_joined(void **state)
+{
+    (void)state;
+    static const char *const names[][2] = {{"header.stamp.secs", "header.stamp.nsecs"},
+                                           {"field.header.stamp.sec", "field.header.stamp.nanosec"},
+                                           {"sec", "nsec"},
+                                           {"Secs", "NSecs"},
+                                           {"tv_sec", "tv_nsec"}};
+    const imk_log_settings settings = imk_log_default();
+    char text[400];
+    for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
+        snprintf(text, sizeof text,
+                 "%s,%s,gyro_x [rad/s]\n1714552800,994999999,1\n1714552801,4999999,2\n"
+                 "1714552801,995000000,3\n",
+                 names[k][0], names[k][1]);
+        read_text(text, &settings);
+        assert_int_equal(t.status, IMK_OK);
+        assert_int_equal(t.columns, 2);
+        assert_int_equal(t.column[0].quantity, IMK_QUANTITY_TIME);
+        assert_int_equal(t.rows, 3);
+        CHECK_CLOSE(t.data[0][0], 0, 0);
+        CHECK_CLOSE(t.data[0][1], 0.01, 0);
+        CHECK_CLOSE(t.data[0][2], 1.000000001, 0);
+    }
+    read_text("sec,usec,gyro_x [rad/s]\n12,999999,1\n13,9999,2\n", &settings);
+    CHECK_CLOSE(t.data[0][0], 12.999999, 0); /* a clock without epoch stays as it is */
+    CHECK_CLOSE(t.data[0][1], 13.009999, 0);
+}
+
+/* Behind the rows that are looked at for what the columns are. */
+static void a_rest_of_more_than_a_second_is_no_time(void **state)
+{
+    (void)state;
+    const imk_log_settings settings = imk_log_default();
+    char text[800] = "sec,nsec,gyro_x [rad/s]\n";
+    for (int k = 0; k < 20; k++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%d,5,1\n", k);
+    strcat(text, "20,1000000000,1\n21,5,1\n");
+    read_text(text, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.rows, 21);
+    assert_int_equal(t.damaged, 1);
+}
+
+static void seconds_alone_are_no_time_beside_the_rest(void **state)
+{
+    (void)state;
+    imk_log_settings settings = imk_log_default();
+    settings.map = "time=header.stamp.secs,gyro_x=gyro_x";
+    read_text("header.stamp.secs,header.stamp.nsecs,gyro_x [rad/s]\n5,500000000,1\n6,0,2\n",
+              &settings);
+    assert_int_equal(t.status, IMK_OK);
+    CHECK_CLOSE(t.data[0][0], 5.5, 0);
+    settings.map = NULL;
+    read_text("header.stamp.secs,header.stamp.nsecs,gyro_x [rad/s]\n5.5,500000000,1\n", &settings);
+    check_says(IMK_ERROR_COLUMN, "header.stamp.secs is only the seconds of the time");
+    /* The whole time stands beside them. */
+    read_text("time [s],header.stamp.secs,header.stamp.nsecs,gyro_x [rad/s]\n5.5,5,5e8,1\n",
+              &settings);
+    assert_int_equal(t.status, IMK_OK);
+    CHECK_CLOSE(t.data[0][0], 5.5, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(times_in_two_columns_are_joined),
+        cmocka_unit_test(a_rest_of_more_than_a_second_is_no_time),
+        cmocka_unit_test(seconds_alone_are_no_time_beside_the_rest),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
