@@ -187,6 +187,24 @@ static void judge_message(imki_log_cell *cells, size_t count)
             cells[i].name.kind = NULL;
 }
 
+/* MATLAB's writetable() divides a matrix into columns _1, _2, _3, which are x, y, z where they are
+ * all three, and no other number stands beside them. gyro_1 is of a set that counts from 0. */
+static void count_from_one(imki_log_cell *cells, size_t count)
+{
+    bool shifted[IMK_LOG_COLUMNS_MAX] = {false};
+    for (size_t i = 0; i < count; i++) {
+        const imki_log_name *name = &cells[i].name;
+        unsigned axes = 0;
+        for (size_t k = 0; k < count && name->kind && name->numbered; k++)
+            if (cells[k].name.kind == name->kind && cells[k].name.numbered &&
+                strcmp(cells[k].name.group, name->group) == 0)
+                axes |= 1U << cells[k].name.axis;
+        shifted[i] = !name->exact && axes == (1U << 1 | 1U << 2 | 1U << 3);
+    }
+    for (size_t i = 0; i < count; i++)
+        cells[i].name.axis -= shifted[i];
+}
+
 void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_cell *cells)
 {
     for (size_t i = 0; i < count; i++) {
@@ -204,6 +222,7 @@ void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_ce
             cell->name.kind = NULL;
     }
     judge_message(cells, count);
+    count_from_one(cells, count);
 }
 
 bool imki_log_cells_same(const imki_log_cell *a, const imki_log_cell *b)

@@ -51,6 +51,11 @@ imk_status imki_log_time_parts_refuse(const imki_log_piece *header, const imki_l
 imk_status imki_log_map(const char *map, const imki_log_piece *header, size_t count,
                         char (*text)[IMKI_LOG_NAME_SIZE], imki_log_piece *cells, imk_error *error);
 
+/* The unit that the file has for a column and the one that is stated: one of them, or the same.
+ * @param field  what states it @return IMK_ERROR_CONFLICT */
+imk_status imki_log_units_agree(const char *field, imki_log_piece name, imki_log_piece mapped,
+                                imki_log_piece own, imk_error *error);
+
 /* Units of the settings: are they units, of the right dimension, and not others than the file's? */
 imk_status imki_log_settings_check(const imki_log_layout_read *layout,
                                    const imk_log_settings *settings, imk_error *error);

@@ -325,6 +325,7 @@ static bool find_sensor(const words *w, size_t end, imki_log_name *name)
             if (!is_reading(w, first, first + count, end - 1, sensors[k].kind, name))
                 return false;
             set(name, sensors[k].kind, axis, w, first);
+            name->numbered = is_figure(w->word[end - 1][0]);
             name->of_message = sensors[k].of_message;
             if (numbered)
                 imki_append_text(name->group, sizeof name->group,

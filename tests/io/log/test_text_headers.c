@@ -114,12 +114,45 @@ static void seconds_alone_are_no_time_beside_the_rest(void **state)
     CHECK_CLOSE(t.data[0][0], 5.5, 0);
 }
 
+/* ------------------------------------------------------------------------- axes counted from 1 */
+
+static void check_axes(const char *header, int first, int second, int third)
+{
+    char text[300];
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 100;
+    snprintf(text, sizeof text, "%s\n1,2,3\n", header);
+    read_text(text, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.column[0].axis, first);
+    assert_int_equal(t.column[1].axis, second);
+    assert_int_equal(t.column[2].axis, third);
+}
+
+static void axes_may_be_counted_from_one(void **state)
+{
+    (void)state;
+    check_axes("AngularVelocity_1 [rad/s],AngularVelocity_2 [rad/s],AngularVelocity_3 [rad/s]", 0,
+               1, 2);
+    assert_string_equal(t.column[0].name, "gyro_x");
+    assert_string_equal(t.column[2].name, "gyro_z");
+    check_axes("Acceleration_1_g,Acceleration_3_g,Acceleration_2_g", 0, 2, 1); /* unit behind */
+    check_axes("Acceleration_3 [g],Acceleration_1 [g],Acceleration_2 [g]", 2, 0, 1);
+    /* The names of sets of more than three axes count from 0, and so do others that have a 0. */
+    check_axes("gyro_1 [rad/s],gyro_2 [rad/s],gyro_3 [rad/s]", 1, 2, 3);
+    check_axes("gyroADC[0] (deg/s),gyroADC[1] (deg/s),gyroADC[2] (deg/s)", 0, 1, 2);
+    check_axes("AngularVelocity_1 [rad/s],AngularVelocity_2 [rad/s],AngularVelocity_0 [rad/s]", 1,
+               2, 0);
+    check_axes("AngularVelocity_1 [rad/s],AngularVelocity_2 [rad/s],other", 1, 2, -1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(times_in_two_columns_are_joined),
         cmocka_unit_test(a_rest_of_more_than_a_second_is_no_time),
         cmocka_unit_test(seconds_alone_are_no_time_beside_the_rest),
+        cmocka_unit_test(axes_may_be_counted_from_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
