@@ -53,6 +53,15 @@ void imki_log_unit_split(imki_log_piece *name, imki_log_piece *unit)
     trim(unit);
 }
 
+imki_log_piece imki_log_unit_of_name(imki_log_piece name)
+{
+    char text[48];
+    imki_log_piece_copy(text, sizeof text, name);
+    const char *unit = imki_log_name_of(text).unit;
+    return unit ? (imki_log_piece){unit, unit + strlen(unit)}
+                : (imki_log_piece){name.end, name.end};
+}
+
 const char *imki_log_unit_setting(imk_quantity quantity, const imk_log_settings *settings)
 {
     switch (quantity) {
@@ -128,6 +137,13 @@ static imk_status find_unit(imki_log_cell *cell, const imk_log_settings *setting
         text = "g";
     if (text)
         unit = (imki_log_piece){text, text + strlen(text)};
+    if (cell->name.unit && !dates) {
+        const imki_log_piece end = {cell->name.unit, cell->name.unit + strlen(cell->name.unit)};
+        const imk_status agree =
+            imki_log_units_agree(cell->column.name, cell->text, unit, end, error);
+        if (agree != IMK_OK)
+            return agree;
+    }
     const imk_status status = imk_unit_parse(unit.begin, unit.end, &cell->column.unit, error);
     if (status != IMK_OK && error)
         snprintf(error->field, sizeof error->field, "%s",

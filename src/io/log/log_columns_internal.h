@@ -51,6 +51,9 @@ imk_status imki_log_time_parts_refuse(const imki_log_piece *header, const imki_l
 imk_status imki_log_map(const char *map, const imki_log_piece *header, size_t count,
                         char (*text)[IMKI_LOG_NAME_SIZE], imki_log_piece *cells, imk_error *error);
 
+/* The unit by the end of a name, as in "acc_x_mg"; empty: there is none. */
+imki_log_piece imki_log_unit_of_name(imki_log_piece name);
+
 /* The unit that the file has for a column and the one that is stated: one of them, or the same.
  * @param field  what states it @return IMK_ERROR_CONFLICT */
 imk_status imki_log_units_agree(const char *field, imki_log_piece name, imki_log_piece mapped,

@@ -120,18 +120,14 @@ static imk_status map_one(imki_log_piece pair, const imki_log_piece *header, siz
         return refuse(bare, "is mapped twice", due, error);
     imki_log_piece cell = header[index];
     imki_log_unit_split(&cell, &own);
+    if (own.begin == own.end)
+        own = imki_log_unit_of_name(cell);
     status = imki_log_units_agree("map", bare, unit, own, error);
     if (status != IMK_OK)
         return status;
     char name[48], stated[60];
     imki_log_piece_copy(name, sizeof name, to);
     imki_log_piece_copy(stated, sizeof stated, own.begin < own.end ? own : unit);
-    if (!stated[0]) { /* by the end of its own name: acc_x_mg */
-        char alone[48];
-        imki_log_piece_copy(alone, sizeof alone, bare);
-        const char *end = imki_log_name_of(alone).unit;
-        imki_copy_text(stated, sizeof stated, end ? end : "");
-    }
     snprintf(text[index], sizeof text[index], stated[0] ? "%s [%s]" : "%s", name, stated);
     cells[index] = (imki_log_piece){text[index], text[index] + strlen(text[index])};
     return IMK_OK;

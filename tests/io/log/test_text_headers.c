@@ -146,6 +146,39 @@ static void axes_may_be_counted_from_one(void **state)
     check_axes("AngularVelocity_1 [rad/s],AngularVelocity_2 [rad/s],other", 1, 2, -1);
 }
 
+/* -------------------------------------------------------------------- units against each other */
+
+static void units_must_agree_with_the_end_of_the_name(void **state)
+{
+    (void)state;
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 100;
+    read_text("gyro_x_dps\nrad/s\n1\n", &settings); /* a line of units */
+    check_says(IMK_ERROR_CONFLICT,
+               "[rad/s] does not agree with the file, which says [deg/s] for gyro_x_dps");
+    read_text("gyro_x_dps [rad/s]\n1\n", &settings);
+    check_says(IMK_ERROR_CONFLICT, "which says [deg/s] for gyro_x_dps");
+    read_text("gyro_x_dps [deg/s]\n180\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    CHECK_CLOSE(t.data[0][0], 3.14159265358979312, 1e-15); /* 180 deg/s */
+    settings.columns = "gyro_x [rad/s]";
+    read_text("gyro_x_dps\n180\n", &settings);
+    check_says(IMK_ERROR_CONFLICT, "columns");
+    check_says(IMK_ERROR_CONFLICT, "which says [deg/s] for gyro_x_dps");
+    settings.columns = "gyro_x";
+    read_text("gyro_x_dps\n180\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    CHECK_CLOSE(t.data[0][0], 3.14159265358979312, 1e-15);
+    settings.gyro_unit = "rad/s";
+    read_text("gyro_x_dps\n180\n", &settings);
+    check_says(IMK_ERROR_CONFLICT, "--gyro-unit rad/s does not agree with the file");
+    settings = imk_log_default();
+    settings.rate = 100;
+    settings.map = "gyro_x=gyro_x_dps [rad/s]";
+    read_text("gyro_x_dps\n180\n", &settings);
+    check_says(IMK_ERROR_CONFLICT, "which says [deg/s] for gyro_x_dps");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -153,6 +186,7 @@ int main(void)
         cmocka_unit_test(a_rest_of_more_than_a_second_is_no_time),
         cmocka_unit_test(seconds_alone_are_no_time_beside_the_rest),
         cmocka_unit_test(axes_may_be_counted_from_one),
+        cmocka_unit_test(units_must_agree_with_the_end_of_the_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -268,6 +268,13 @@ static imk_status replace_names(const char *columns, bool has_header, imki_csv_h
         const bool skip = name.end - name.begin == 1 && *name.begin == '-';
         imki_log_unit_split(&name, &unit);
         imki_log_unit_split(&own, &own_unit);
+        if (own_unit.begin == own_unit.end)
+            own_unit = imki_log_unit_of_name(own);
+        const imk_status status = has_header && !skip
+                                      ? imki_log_units_agree("columns", own, unit, own_unit, error)
+                                      : IMK_OK;
+        if (status != IMK_OK)
+            return status;
         imki_log_piece_copy(first, sizeof first, name);
         if (unit.begin < unit.end)
             imki_log_piece_copy(second, sizeof second, unit);
