@@ -179,6 +179,31 @@ static void units_must_agree_with_the_end_of_the_name(void **state)
     check_says(IMK_ERROR_CONFLICT, "which says [deg/s] for gyro_x_dps");
 }
 
+/* 10 ms apart, and in milliseconds of the year 54 million. */
+static void times_of_another_unit_are_refused(void **state)
+{
+    (void)state;
+    imk_log_settings settings = imk_log_default();
+    static const char stamps[] = "timestamp,gyro_x [rad/s]\n1714552800000000000,1\n"
+                                 "1714552800010000000,2\n1714552800020000000,3\n";
+    settings.time_unit = "ms";
+    read_text(stamps, &settings);
+    check_says(IMK_ERROR_CONFLICT, "--time-unit: times such as 1714552800000000000 are no ms: they "
+                                   "can only be nanoseconds since 1970");
+    check_says(IMK_ERROR_CONFLICT, "give --time-unit ns");
+    settings.time_unit = "ns";
+    read_text(stamps, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    CHECK_CLOSE(t.data[0][2], 0.02, 0);
+    settings.time_unit = NULL;
+    read_text("t [s],gyro_x [rad/s]\n1714552800000,1\n1714552800010,2\n", &settings);
+    check_says(IMK_ERROR_CONFLICT, "they can only be milliseconds since 1970");
+    check_says(IMK_ERROR_CONFLICT, "write the unit ms into the header");
+    /* A clock that counts from elsewhere may be anything. */
+    read_text("t [s],gyro_x [rad/s]\n5000000000,1\n5000000001,2\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -187,6 +212,7 @@ int main(void)
         cmocka_unit_test(seconds_alone_are_no_time_beside_the_rest),
         cmocka_unit_test(axes_may_be_counted_from_one),
         cmocka_unit_test(units_must_agree_with_the_end_of_the_name),
+        cmocka_unit_test(times_of_another_unit_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

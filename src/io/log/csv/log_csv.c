@@ -259,6 +259,10 @@ static imk_status open_csv(imk_log_reader *reader, imk_error *error)
     if (status != IMK_OK)
         return status;
     find_stamps(reader, csv);
+    if (csv->time_cell < IMK_LOG_COLUMNS_MAX)
+        status = imki_csv_time_unit_check(&csv->look, &reader->layout, csv->time_cell, error);
+    if (status != IMK_OK)
+        return status;
     const size_t line = text->line;
     csv->begin = imki_log_text_place(text);
     text->hold = text->next;

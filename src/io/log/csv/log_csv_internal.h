@@ -67,6 +67,11 @@ bool imki_csv_has_decimal_commas(const imki_csv_look *look, size_t count);
 /* What the rows say of what is missing. */
 imki_log_hints imki_csv_hints(const imki_csv_look *look, const imki_log_layout_read *layout);
 
+/* Refuse a unit by which the times count from beyond 2100, where they can only be of another one.
+ * @param cell  of the time @return IMK_ERROR_CONFLICT */
+imk_status imki_csv_time_unit_check(const imki_csv_look *look, const imki_log_layout_read *layout,
+                                    size_t cell, imk_error *error);
+
 /* Is this a cell with a value, or with a word for none? */
 bool imki_csv_is_value(imki_log_piece cell);
 

@@ -124,21 +124,51 @@ static void find_time_unit(double first, double step, imki_log_hints *hints)
     hints->time_words = units[fits].words;
 }
 
+/* What the times in a cell of the rows look like. */
+static void look_at_times(const imki_csv_look *look, size_t cell, imki_log_hints *hints)
+{
+    double first = (double)NAN, last = (double)NAN;
+    if (look->rows < 2)
+        return;
+    const size_t row = look->rows - 1;
+    const char *a = look->text[0][cell], *b = look->text[row][cell];
+    if (!imki_log_piece_is_number((imki_log_piece){a, a + strlen(a)}, &first) ||
+        !imki_log_piece_is_number((imki_log_piece){b, b + strlen(b)}, &last))
+        return;
+    find_time_unit(first, (last - first) / (double)row, hints);
+    snprintf(hints->time, sizeof hints->time, "%.31s", a);
+}
+
 imki_log_hints imki_csv_hints(const imki_csv_look *look, const imki_log_layout_read *layout)
 {
     imki_log_hints hints = {.counts = look_like_counts(look, layout)};
-    for (size_t i = 0; i < layout->cell_count; i++) {
-        double first = (double)NAN, last = (double)NAN;
-        if (layout->cell_column[i] < 0 || layout->cell_column[i] != layout->time_column ||
-            !layout->missing.cell[i] || look->rows < 2)
-            continue;
-        const size_t row = look->rows - 1;
-        const char *a = look->text[0][i], *b = look->text[row][i];
-        if (!imki_log_piece_is_number((imki_log_piece){a, a + strlen(a)}, &first) ||
-            !imki_log_piece_is_number((imki_log_piece){b, b + strlen(b)}, &last))
-            continue;
-        find_time_unit(first, (last - first) / (double)row, &hints);
-        snprintf(hints.time, sizeof hints.time, "%.31s", a);
-    }
+    for (size_t i = 0; i < layout->cell_count; i++)
+        if (layout->cell_column[i] >= 0 && layout->cell_column[i] == layout->time_column &&
+            layout->missing.cell[i])
+            look_at_times(look, i, &hints);
     return hints;
+}
+
+imk_status imki_csv_time_unit_check(const imki_csv_look *look, const imki_log_layout_read *layout,
+                                    size_t cell, imk_error *error)
+{
+    const imk_log_column *column = &layout->column[layout->time_column];
+    const char *text = look->text[0][cell];
+    imki_log_hints hints = {.time_unit = NULL};
+    double first;
+    char found[128], expected[160];
+    look_at_times(look, cell, &hints);
+    if (!hints.time_unit || layout->date_cell[cell] ||
+        !imki_log_piece_is_number((imki_log_piece){text, text + strlen(text)}, &first) ||
+        first * column->unit.scale <= epoch_last)
+        return IMK_OK;
+    const bool option = column->unit_origin == IMK_UNIT_OF_SETTINGS;
+    snprintf(found, sizeof found, "times such as %.24s are no %.8s: they can only be %s since 1970",
+             hints.time, column->unit.text, hints.time_words);
+    snprintf(
+        expected, sizeof expected, option ? "%s%s" : "%s%s%s",
+        option ? "give --time-unit " : "write the unit ", hints.time_unit,
+        " into the header, or leave this column out with --map or --columns and state --rate RATE");
+    return imk_error_set(error, IMK_ERROR_CONFLICT, option ? "--time-unit" : column->name, found,
+                         expected);
 }
