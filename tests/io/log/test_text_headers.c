@@ -6,7 +6,9 @@
 #include "imukit/io.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { ROOM = 32, COLUMNS = 8 };
 
@@ -204,6 +206,38 @@ static void times_of_another_unit_are_refused(void **state)
     assert_int_equal(t.status, IMK_OK);
 }
 
+/* --------------------------------------------------------------------------- names with brackets
+ */
+
+/* As of Blackbox, read and written: the name is another one, and none is there twice. */
+static void brackets_in_names_become_signs(void **state)
+{
+    (void)state;
+    char path[300], text[300] = "";
+    const char *directory = getenv("TMPDIR");
+    const int decimals[4] = {-1, -1, -1, -1};
+    const double value = 1, *const data[4] = {&value, &value, &value, &value};
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 100;
+    snprintf(path, sizeof path, "%s/imukit_%ld_brackets.csv", directory ? directory : "/tmp",
+             (long)getpid());
+    read_text("axisP[0],axisP_0,gyroUnfilt[1] (deg/s),gyroADC[2] (deg/s)\n1,2,3,4\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    imk_log_sink sink = {.path = path};
+    const imk_record_sink s = imk_log_sink_of(&sink);
+    CHECK_OK(s.begin(s.context, 4, t.column, decimals, 1, NULL));
+    CHECK_OK(s.write(s.context, 1, data, NULL, NULL));
+    CHECK_OK(imk_log_sink_end(&sink, IMK_OK, NULL));
+    FILE *file = fopen(path, "rb");
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    remove(path);
+    static const char head[] = "axisP_0_,axisP_0,gyroUnfilt_1 [deg/s],gyro_z [deg/s]\n";
+    assert_memory_equal(text, head, sizeof head - 1);
+    read_text(text, &settings);
+    assert_int_equal(t.column[2].quantity, IMK_QUANTITY_OTHER); /* as before */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -213,6 +247,7 @@ int main(void)
         cmocka_unit_test(axes_may_be_counted_from_one),
         cmocka_unit_test(units_must_agree_with_the_end_of_the_name),
         cmocka_unit_test(times_of_another_unit_are_refused),
+        cmocka_unit_test(brackets_in_names_become_signs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
