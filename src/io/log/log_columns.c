@@ -203,6 +203,27 @@ static void judge_message(imki_log_cell *cells, size_t count)
             cells[i].name.kind = NULL;
 }
 
+static bool is_word(imki_log_piece text, const char *word)
+{
+    while (text.begin < text.end && imki_lower(*text.begin) == *word && *word) {
+        text.begin++;
+        word++;
+    }
+    return text.begin == text.end && !*word;
+}
+
+/* Seconds beside minutes are those of a clock, and no time of their own. */
+static void judge_seconds(imki_log_cell *cells, size_t count)
+{
+    bool minutes = false;
+    for (size_t i = 0; i < count; i++)
+        minutes = minutes || is_word(cells[i].text, "minute") ||
+                  is_word(cells[i].text, "minutes") || is_word(cells[i].text, "min");
+    for (size_t i = 0; i < count && minutes; i++)
+        if (is_word(cells[i].text, "seconds"))
+            cells[i].name.kind = NULL;
+}
+
 /* MATLAB's writetable() divides a matrix into columns _1, _2, _3, which are x, y, z where they are
  * all three, and no other number stands beside them. gyro_1 is of a set that counts from 0. */
 static void count_from_one(imki_log_cell *cells, size_t count)
@@ -238,6 +259,7 @@ void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_ce
             cell->name.kind = NULL;
     }
     judge_message(cells, count);
+    judge_seconds(cells, count);
     count_from_one(cells, count);
 }
 

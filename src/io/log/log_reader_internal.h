@@ -27,6 +27,7 @@ typedef struct imki_log_hints {
     const char *time_unit, *time_words; /* "ns", "nanoseconds": the only one that fits; NULL */
     char time[32];                      /* one of the times */
     bool counts;                        /* whole numbers where a unit is missing */
+    int time_like; /* a column that seems to be the time by its name and numbers; -1: none */
 } imki_log_hints;
 
 /* Cells of a row and the columns they are. */

@@ -238,6 +238,44 @@ static void brackets_in_names_become_signs(void **state)
     assert_int_equal(t.column[2].quantity, IMK_QUANTITY_OTHER); /* as before */
 }
 
+/* ---------------------------------------------------------------------------- names of the time */
+
+static void check_time(const char *name, const char *words)
+{
+    char text[300];
+    const imk_log_settings settings = imk_log_default();
+    snprintf(text, sizeof text, "%s,gyro_x [rad/s]\n10,1\n20,2\n30,3\n", name);
+    read_text(text, &settings);
+    if (words) {
+        check_says(IMK_ERROR_RATE_MISSING, words);
+        return;
+    }
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_TIME);
+}
+
+static void times_have_many_names(void **state)
+{
+    (void)state;
+    check_time("Seconds", NULL);
+    CHECK_CLOSE(t.data[0][1], 20, 0);
+    check_time("Time since start in ms", NULL);
+    CHECK_CLOSE(t.data[0][1], 0.02, 0);
+    check_time("timestamps (us)", NULL);
+    CHECK_CLOSE(t.data[0][1], 20e-6, 1e-20);
+    /* Not read, and named. */
+    check_time("TimeStartup", "if TimeStartup is the time, name it so with --columns, or with "
+                              "--map \"time=TimeStartup,...\"");
+    check_time("sensor secs", "if sensor secs is the time");
+    check_time("tempo [s]", "if tempo is the time");
+    const imk_log_settings settings = imk_log_default();
+    read_text("section,gyro_x [rad/s]\n1,1\n1,2\n", &settings); /* does not increase */
+    check_says(IMK_ERROR_RATE_MISSING, "the log has no time column");
+    assert_null(strstr(t.message, "section"));
+    read_text("minutes,seconds,gyro_x [rad/s]\n1,58,1\n1,59,2\n2,0,2\n", &settings); /* a clock */
+    check_says(IMK_ERROR_RATE_MISSING, "the log has no time column");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -248,6 +286,7 @@ int main(void)
         cmocka_unit_test(units_must_agree_with_the_end_of_the_name),
         cmocka_unit_test(times_of_another_unit_are_refused),
         cmocka_unit_test(brackets_in_names_become_signs),
+        cmocka_unit_test(times_have_many_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,8 @@
  * a unit that is missing. */
 #include "log_csv_internal.h"
 
+#include "base/text_internal.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -139,9 +141,50 @@ static void look_at_times(const imki_csv_look *look, size_t cell, imki_log_hints
     snprintf(hints->time, sizeof hints->time, "%.31s", a);
 }
 
+/* Has a name one of the words for a time, anywhere in it? */
+static bool names_time(const char *name)
+{
+    static const char *const words[] = {"time", "stamp", "sec", "clock"};
+    for (const char *at = name; *at; at++)
+        for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
+            size_t same = 0;
+            while (words[k][same] && imki_lower(at[same]) == words[k][same])
+                same++;
+            if (!words[k][same])
+                return true;
+        }
+    return false;
+}
+
+/* Do the numbers of a cell increase from row to row? */
+static bool increases(const imki_csv_look *look, size_t cell)
+{
+    double last = -INFINITY, value;
+    for (size_t row = 0; row < look->rows; row++, last = value) {
+        const char *text = look->text[row][cell];
+        if (look->count[row] <= cell ||
+            !imki_log_piece_is_number((imki_log_piece){text, text + strlen(text)}, &value) ||
+            !(value > last))
+            return false;
+    }
+    return look->rows > 1;
+}
+
+static int find_time_like(const imki_csv_look *look, const imki_log_layout_read *layout)
+{
+    for (size_t i = 0; i < layout->cell_count; i++) {
+        const int column = layout->cell_column[i];
+        if (column >= 0 && layout->column[column].quantity == IMK_QUANTITY_OTHER &&
+            names_time(layout->column[column].name) && increases(look, i))
+            return column;
+    }
+    return -1;
+}
+
 imki_log_hints imki_csv_hints(const imki_csv_look *look, const imki_log_layout_read *layout)
 {
-    imki_log_hints hints = {.counts = look_like_counts(look, layout)};
+    imki_log_hints hints = {.counts = look_like_counts(look, layout),
+                            .time_like = find_time_like(look, layout)};
     for (size_t i = 0; i < layout->cell_count; i++)
         if (layout->cell_column[i] >= 0 && layout->cell_column[i] == layout->time_column &&
             layout->missing.cell[i])
@@ -154,7 +197,7 @@ imk_status imki_csv_time_unit_check(const imki_csv_look *look, const imki_log_la
 {
     const imk_log_column *column = &layout->column[layout->time_column];
     const char *text = look->text[0][cell];
-    imki_log_hints hints = {.time_unit = NULL};
+    imki_log_hints hints = {.time_like = -1};
     double first;
     char found[128], expected[160];
     look_at_times(look, cell, &hints);
