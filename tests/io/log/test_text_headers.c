@@ -276,6 +276,68 @@ static void times_have_many_names(void **state)
     check_says(IMK_ERROR_RATE_MISSING, "the log has no time column");
 }
 
+/* -------------------------------------------------------------------- texts that are something
+ * else */
+
+static void dates_in_other_words_are_named(void **state)
+{
+    (void)state;
+    static const char *const times[] = {
+        "01/05/2024 10:00:00.00", "10:00:00.010", "2024-05-01", "01.05.2024", "10:00:00 PM",
+        "1-May-2024 10:00:00"};
+    imk_log_settings settings = imk_log_default();
+    for (size_t k = 0; k < 2 * (sizeof times / sizeof times[0]); k++) {
+        char text[200], words[160];
+        snprintf(text, sizeof text, "time,gyro_x [rad/s]\n%s,1\n", times[k / 2]);
+        snprintf(words, sizeof words,
+                 "\"%s\" is a date or time of day that imukit does not read; write it as "
+                 "2024-05-01T10:00:00.000 (ISO 8601) or as seconds",
+                 times[k / 2]);
+        settings.time_unit = k % 2 ? "s" : NULL; /* which does not make it one */
+        read_text(text, &settings);
+        check_says(IMK_ERROR_SYNTAX, words);
+    }
+    settings.time_unit = NULL;
+    read_text("time [s],gyro_x [rad/s]\n1.5e-3,1\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+}
+
+static void headers_of_one_byte_each_are_named(void **state)
+{
+    (void)state;
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 100;
+    read_text("gyro_x [\xB0/s]\n1\n", &settings); /* the degree sign of Latin-1 */
+    check_says(IMK_ERROR_FORMAT,
+               "not UTF-8, and a unit is not readable; convert it: iconv -f LATIN1");
+    read_text("gyro_x\n\xB0/s\n1\n", &settings);
+    check_says(IMK_ERROR_FORMAT, "not UTF-8");
+    read_text("gyro_x [\xC2\xB0/s]\n1\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    settings.columns = "gyro_x [deg/s]";
+    read_text("gyro_x [\xB0/s]\n1\n", &settings);
+    check_says(IMK_ERROR_CONFLICT, "columns");
+    settings.columns = NULL; /* a name may be anything */
+    read_text("gyro_x [deg/s],gr\xFCn\n1,2\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+}
+
+static void headers_come_first(void **state)
+{
+    (void)state;
+    imk_log_settings settings = imk_log_default();
+    static const char below[] = "Device: X1\nTime: today\ntime [s],gyro_x [deg/s]\n0,1\n1,2\n";
+    read_text(below, &settings);
+    check_says(IMK_ERROR_COLUMN, "the names of the columns are in line 3, below other lines");
+    check_says(IMK_ERROR_COLUMN, "delete the lines above it");
+    settings.columns = "time [s],gyro_x [deg/s]";
+    read_text(below, &settings);
+    check_says(IMK_ERROR_COLUMN, "the names of the columns are in line 3");
+    settings.columns = NULL;
+    read_text("# Device: X1\n# Time: today\ntime [s],gyro_x [deg/s]\n0,1\n1,2\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -287,6 +349,9 @@ int main(void)
         cmocka_unit_test(times_of_another_unit_are_refused),
         cmocka_unit_test(brackets_in_names_become_signs),
         cmocka_unit_test(times_have_many_names),
+        cmocka_unit_test(dates_in_other_words_are_named),
+        cmocka_unit_test(headers_of_one_byte_each_are_named),
+        cmocka_unit_test(headers_come_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -224,10 +224,16 @@ static imk_status make_layout(imk_log_reader *reader, imki_csv *csv, imk_error *
             i < csv->look.count[0] && imki_log_date_read(cell, cell + strlen(cell), NULL);
     }
     find_parts(reader, csv);
-    imk_status status = imki_csv_choose_sensor(reader, header, error);
+    imk_status status = imki_csv_encoding_check(header, error);
+    if (status == IMK_OK)
+        status = imki_csv_choose_sensor(reader, header, error);
     if (status == IMK_OK)
         status =
             imki_log_layout_make(header->cell, header->count, &reader->settings, layout, error);
+    if (status == IMK_OK || status == IMK_ERROR_UNIT_MISSING) {
+        const imk_status dates = imki_csv_dates_check(&csv->look, layout, header->number, error);
+        status = dates != IMK_OK ? dates : status;
+    }
     if ((status == IMK_ERROR_UNIT_MISSING || status == IMK_ERROR_RATE_MISSING) && error) {
         const imki_log_hints hints = imki_csv_hints(&csv->look, layout);
         status = imki_log_missing_refuse(layout, &hints, error);

@@ -60,6 +60,18 @@ void imki_csv_go_back(imki_log_text *text, size_t line);
 /* Find the header and what the cells of the rows are called; the text is then at the rows. */
 imk_status imki_csv_header_read(imk_log_reader *reader, imk_error *error);
 
+bool imki_csv_is_utf8(imki_log_piece piece);
+/* Refuse units that are not UTF-8, such as the degree sign of Latin-1. Names may be anything.
+ * @return IMK_ERROR_FORMAT */
+imk_status imki_csv_encoding_check(const imki_csv_header *header, imk_error *error);
+/* Refuse a header of fewer than two known names if one with more stands below it.
+ * @return IMK_ERROR_COLUMN */
+imk_status imki_csv_preamble_check(imk_log_reader *reader, imk_error *error);
+/* Refuse times that are dates in words that are not read. @param line  of the header
+ * @return IMK_ERROR_SYNTAX */
+imk_status imki_csv_dates_check(const imki_csv_look *look, const imki_log_layout_read *layout,
+                                size_t line, imk_error *error);
+
 /* Look at the first rows, which stay. */
 void imki_csv_look_at(imk_log_reader *reader, imki_csv_look *look);
 /* Is each number of the rows one with a decimal comma, if it has decimals? */
