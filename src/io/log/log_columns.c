@@ -53,6 +53,15 @@ void imki_log_unit_split(imki_log_piece *name, imki_log_piece *unit)
     trim(unit);
 }
 
+imki_log_piece imki_log_unit_of_name(imki_log_piece name)
+{
+    char text[48];
+    imki_log_piece_copy(text, sizeof text, name);
+    const char *unit = imki_log_name_of(text).unit;
+    return unit ? (imki_log_piece){unit, unit + strlen(unit)}
+                : (imki_log_piece){name.end, name.end};
+}
+
 const char *imki_log_unit_setting(imk_quantity quantity, const imk_log_settings *settings)
 {
     switch (quantity) {
@@ -128,6 +137,13 @@ static imk_status find_unit(imki_log_cell *cell, const imk_log_settings *setting
         text = "g";
     if (text)
         unit = (imki_log_piece){text, text + strlen(text)};
+    if (cell->name.unit && !dates) {
+        const imki_log_piece end = {cell->name.unit, cell->name.unit + strlen(cell->name.unit)};
+        const imk_status agree =
+            imki_log_units_agree(cell->column.name, cell->text, unit, end, error);
+        if (agree != IMK_OK)
+            return agree;
+    }
     const imk_status status = imk_unit_parse(unit.begin, unit.end, &cell->column.unit, error);
     if (status != IMK_OK && error)
         snprintf(error->field, sizeof error->field, "%s",
@@ -187,6 +203,45 @@ static void judge_message(imki_log_cell *cells, size_t count)
             cells[i].name.kind = NULL;
 }
 
+static bool is_word(imki_log_piece text, const char *word)
+{
+    while (text.begin < text.end && imki_lower(*text.begin) == *word && *word) {
+        text.begin++;
+        word++;
+    }
+    return text.begin == text.end && !*word;
+}
+
+/* Seconds beside minutes are those of a clock, and no time of their own. */
+static void judge_seconds(imki_log_cell *cells, size_t count)
+{
+    bool minutes = false;
+    for (size_t i = 0; i < count; i++)
+        minutes = minutes || is_word(cells[i].text, "minute") ||
+                  is_word(cells[i].text, "minutes") || is_word(cells[i].text, "min");
+    for (size_t i = 0; i < count && minutes; i++)
+        if (is_word(cells[i].text, "seconds"))
+            cells[i].name.kind = NULL;
+}
+
+/* MATLAB's writetable() divides a matrix into columns _1, _2, _3, which are x, y, z where they are
+ * all three, and no other number stands beside them. gyro_1 is of a set that counts from 0. */
+static void count_from_one(imki_log_cell *cells, size_t count)
+{
+    bool shifted[IMK_LOG_COLUMNS_MAX] = {false};
+    for (size_t i = 0; i < count; i++) {
+        const imki_log_name *name = &cells[i].name;
+        unsigned axes = 0;
+        for (size_t k = 0; k < count && name->kind && name->numbered; k++)
+            if (cells[k].name.kind == name->kind && cells[k].name.numbered &&
+                strcmp(cells[k].name.group, name->group) == 0)
+                axes |= 1U << cells[k].name.axis;
+        shifted[i] = !name->exact && axes == (1U << 1 | 1U << 2 | 1U << 3);
+    }
+    for (size_t i = 0; i < count; i++)
+        cells[i].name.axis -= shifted[i];
+}
+
 void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_cell *cells)
 {
     for (size_t i = 0; i < count; i++) {
@@ -204,6 +259,8 @@ void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_ce
             cell->name.kind = NULL;
     }
     judge_message(cells, count);
+    judge_seconds(cells, count);
+    count_from_one(cells, count);
 }
 
 bool imki_log_cells_same(const imki_log_cell *a, const imki_log_cell *b)
@@ -358,7 +415,10 @@ imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
     if (status != IMK_OK)
         return status;
     imki_log_cells_name(settings->map ? mapped : header, cell_count, cells);
-    status = resolve_doubles(cells, cell_count, error);
+    if (!settings->map)
+        status = imki_log_time_parts_refuse(header, cells, cell_count, error);
+    if (status == IMK_OK)
+        status = resolve_doubles(cells, cell_count, error);
     for (size_t i = 0; i < cell_count && status == IMK_OK; i++)
         status = add_cell(layout, i, &cells[i], settings, error);
     if (status == IMK_OK)

@@ -33,10 +33,31 @@ bool imki_log_unit_fits(const imki_log_kind *kind, const imk_unit *unit);
 imk_status imki_log_unit_refuse(const imki_log_kind *kind, const imk_unit *unit, const char *field,
                                 imk_error *error);
 
+/* A time in two columns: whole seconds and what is beyond them. */
+typedef struct imki_log_time_parts {
+    size_t whole, rest; /* cells */
+    int64_t ticks;      /* [ns] of one of the rest */
+} imki_log_time_parts;
+
+/* Has the header such two, and no column of the whole time by an exact name? */
+bool imki_log_time_parts_find(const imki_log_piece *header, size_t count,
+                              imki_log_time_parts *parts);
+/* Refuse to take the seconds alone for the time. @return IMK_ERROR_COLUMN */
+imk_status imki_log_time_parts_refuse(const imki_log_piece *header, const imki_log_cell *cells,
+                                      size_t count, imk_error *error);
+
 /* The header that settings.map makes of one: columns that it does not name are "-".
  * @param text  holds the new names */
 imk_status imki_log_map(const char *map, const imki_log_piece *header, size_t count,
                         char (*text)[IMKI_LOG_NAME_SIZE], imki_log_piece *cells, imk_error *error);
+
+/* The unit by the end of a name, as in "acc_x_mg"; empty: there is none. */
+imki_log_piece imki_log_unit_of_name(imki_log_piece name);
+
+/* The unit that the file has for a column and the one that is stated: one of them, or the same.
+ * @param field  what states it @return IMK_ERROR_CONFLICT */
+imk_status imki_log_units_agree(const char *field, imki_log_piece name, imki_log_piece mapped,
+                                imki_log_piece own, imk_error *error);
 
 /* Units of the settings: are they units, of the right dimension, and not others than the file's? */
 imk_status imki_log_settings_check(const imki_log_layout_read *layout,

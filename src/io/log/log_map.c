@@ -81,9 +81,8 @@ static imk_status find_cell(imki_log_piece name, imki_log_piece bare, const imki
                   error);
 }
 
-/* The unit of the file and that of the map: one of them, or the same. */
-static imk_status check_units(imki_log_piece name, imki_log_piece mapped, imki_log_piece own,
-                              imk_error *error)
+imk_status imki_log_units_agree(const char *field, imki_log_piece name, imki_log_piece mapped,
+                                imki_log_piece own, imk_error *error)
 {
     imk_unit a, b;
     char found[96], first[16], second[16];
@@ -98,7 +97,7 @@ static imk_status check_units(imki_log_piece name, imki_log_piece mapped, imki_l
     snprintf(found, sizeof found, "[%s] does not agree with the file, which says [%s] for %.*s",
              first, second, (int)(name.end - name.begin < 24 ? name.end - name.begin : 24),
              name.begin);
-    return imk_error_set(error, IMK_ERROR_CONFLICT, "map", found,
+    return imk_error_set(error, IMK_ERROR_CONFLICT, field, found,
                          "leave the unit out, or correct the header if it is wrong");
 }
 
@@ -121,18 +120,14 @@ static imk_status map_one(imki_log_piece pair, const imki_log_piece *header, siz
         return refuse(bare, "is mapped twice", due, error);
     imki_log_piece cell = header[index];
     imki_log_unit_split(&cell, &own);
-    status = check_units(bare, unit, own, error);
+    if (own.begin == own.end)
+        own = imki_log_unit_of_name(cell);
+    status = imki_log_units_agree("map", bare, unit, own, error);
     if (status != IMK_OK)
         return status;
     char name[48], stated[60];
     imki_log_piece_copy(name, sizeof name, to);
     imki_log_piece_copy(stated, sizeof stated, own.begin < own.end ? own : unit);
-    if (!stated[0]) { /* by the end of its own name: acc_x_mg */
-        char alone[48];
-        imki_log_piece_copy(alone, sizeof alone, bare);
-        const char *end = imki_log_name_of(alone).unit;
-        imki_copy_text(stated, sizeof stated, end ? end : "");
-    }
     snprintf(text[index], sizeof text[index], stated[0] ? "%s [%s]" : "%s", name, stated);
     cells[index] = (imki_log_piece){text[index], text[index] + strlen(text[index])};
     return IMK_OK;

@@ -167,7 +167,9 @@ imk_status imki_log_missing_refuse(const imki_log_layout_read *layout, const imk
 {
     const imki_log_missing *m = &layout->missing;
     const char *time = m->rate ? find_time(layout) : NULL;
-    char found[96], expected[400] = "add", why[300] = "", one[120];
+    if (m->rate && !time && hints && hints->time_like >= 0)
+        time = layout->column[hints->time_like].name;
+    char found[96], expected[400] = "add", why[400] = "", one[160];
     for (size_t k = 0; k < m->count; k++) {
         const imki_log_kind *kind = &imki_log_kinds[m->kind[k]];
         const bool shown = kind->quantity == IMK_QUANTITY_TIME && hints && hints->time_unit;
@@ -189,8 +191,10 @@ imk_status imki_log_missing_refuse(const imki_log_layout_read *layout, const imk
                                 : "samples per second, as in --rate 100Hz");
     }
     if (time) {
-        snprintf(one, sizeof one, "; if %.40s is the time, name it so with --map or --columns",
-                 time);
+        snprintf(one, sizeof one,
+                 "; if %.40s is the time, name it so with --columns, or with --map "
+                 "\"time=%.40s,...\"",
+                 time, time);
         imki_append_text(why, sizeof why, one);
     }
     imki_append_text(expected, sizeof expected, " (");

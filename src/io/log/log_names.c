@@ -71,14 +71,26 @@ static const struct {
     const char *words;
     bool exact;
     const char *unit;
-} times[] = {{"time", true, NULL},          {"t", true, NULL},
-             {"timestamp", true, NULL},     {"time stamp", false, NULL},
-             {"ts", false, NULL},           {"stamp", false, NULL},
-             {"header stamp", false, NULL}, {"seconds elapsed", false, "s"},
-             {"elapsed time", false, NULL}, {"time elapsed", false, NULL},
-             {"elapsed", false, NULL},      {"epoch", false, NULL},
-             {"epoch time", false, NULL},   {"unix time", false, NULL},
-             {"unixtime", false, NULL},     {"sample time", false, NULL}};
+} times[] = {{"time", true, NULL},
+             {"t", true, NULL},
+             {"timestamp", true, NULL},
+             {"time stamp", false, NULL},
+             {"ts", false, NULL},
+             {"stamp", false, NULL},
+             {"header stamp", false, NULL},
+             {"seconds elapsed", false, "s"},
+             {"elapsed time", false, NULL},
+             {"time elapsed", false, NULL},
+             {"elapsed", false, NULL},
+             {"epoch", false, NULL},
+             {"epoch time", false, NULL},
+             {"unix time", false, NULL},
+             {"unixtime", false, NULL},
+             {"sample time", false, NULL},
+             {"seconds", false, "s"},
+             {"timestamps", false, NULL},
+             {"time since start", false, NULL},
+             {"time since start in", false, NULL}};
 
 static const struct {
     const char *words;
@@ -325,6 +337,7 @@ static bool find_sensor(const words *w, size_t end, imki_log_name *name)
             if (!is_reading(w, first, first + count, end - 1, sensors[k].kind, name))
                 return false;
             set(name, sensors[k].kind, axis, w, first);
+            name->numbered = is_figure(w->word[end - 1][0]);
             name->of_message = sensors[k].of_message;
             if (numbered)
                 imki_append_text(name->group, sizeof name->group,

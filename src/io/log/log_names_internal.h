@@ -19,6 +19,7 @@ typedef struct imki_log_kind {
 typedef struct imki_log_name {
     const imki_log_kind *kind; /* NULL: a column like any other */
     int axis;                  /* 0 … 7; -1: none */
+    bool numbered;             /* the axis is a figure */
     bool exact;                /* one of the names of docs/logs.md, or one of them in other words */
     bool of_message;           /* called as the field of sensor_msgs/Imu */
     char group[40];            /* the words before the sensor's, "imu0"; "" */

@@ -27,6 +27,7 @@ typedef struct imki_log_hints {
     const char *time_unit, *time_words; /* "ns", "nanoseconds": the only one that fits; NULL */
     char time[32];                      /* one of the times */
     bool counts;                        /* whole numbers where a unit is missing */
+    int time_like; /* a column that seems to be the time by its name and numbers; -1: none */
 } imki_log_hints;
 
 /* Cells of a row and the columns they are. */
@@ -38,6 +39,7 @@ typedef struct imki_log_layout_read {
     bool decimal_comma;                  /* "1,5" is a number */
     bool date_cell[IMK_LOG_COLUMNS_MAX]; /* holds dates: "2024-05-01T12:00:00.5Z" */
     imki_log_stamps stamps;              /* how the times are read; set behind the columns */
+    size_t rest_cell;                    /* of stamps in two columns, the second */
     size_t column_count;
     imk_log_column column[IMK_LOG_COLUMNS_MAX];
     double factor[IMK_LOG_COLUMNS_MAX]; /* per column: scale, with the sign of the axes */

@@ -32,12 +32,45 @@ static imk_status rename_columns(size_t count, const imk_log_column *columns,
     return IMK_OK;
 }
 
+static bool is_taken(size_t count, const imk_log_column *columns, const char *name)
+{
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(columns[i].name, name) == 0)
+            return true;
+    return false;
+}
+
+/* Brackets enclose units in a header: "axisP[0]" of another program is written as axisP_0, which
+ * has the same words. Another column of that name makes it axisP_0_. */
+static void take_out_brackets(size_t count, imk_log_column *columns)
+{
+    for (size_t i = 0; i < count; i++) {
+        char name[sizeof columns[i].name];
+        size_t length = 0;
+        if (!strpbrk(columns[i].name, "[]()"))
+            continue;
+        for (const char *c = columns[i].name; *c; c++) {
+            const bool bracket = strchr("[]()", *c) != NULL;
+            if (bracket && (length == 0 || name[length - 1] == '_' || !c[1]))
+                continue;
+            name[length++] = bracket ? '_' : *c;
+        }
+        name[length] = '\0';
+        while (length > 0 && length + 1 < sizeof name && is_taken(count, columns, name)) {
+            name[length++] = '_';
+            name[length] = '\0';
+        }
+        if (length > 0)
+            memcpy(columns[i].name, name, length + 1);
+    }
+}
+
 static imk_status begin(void *context, size_t column_count, const imk_log_column *columns,
                         const int *decimals, uint64_t rows, imk_error *error)
 {
     imk_log_sink *s = context;
     int count[IMK_LOG_COLUMNS_MAX];
-    imk_log_column renamed[EUROC_COLUMNS];
+    imk_log_column renamed[IMK_LOG_COLUMNS_MAX];
     if (s->euroc && imk_log_format_of(s->path) != imk_log_format_get(0))
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, s->path, "the EuRoC format is a text",
                              "a name that ends in .csv");
@@ -47,9 +80,13 @@ static imk_status begin(void *context, size_t column_count, const imk_log_column
                                                  NULL, rows, &s->writer, error)
                                 : status;
     }
+    if (column_count > IMK_LOG_COLUMNS_MAX)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "column_count", "", "1 to 64 columns");
+    memcpy(renamed, columns, column_count * sizeof *columns);
+    take_out_brackets(column_count, renamed);
     for (size_t c = 0; c < column_count; c++)
         count[c] = decimals[c] >= 0 ? decimals[c] : s->decimals;
-    return imk_log_create(s->path, column_count, columns,
+    return imk_log_create(s->path, column_count, renamed,
                           s->fixed ? IMK_LOG_FIXED : IMK_LOG_SHORTEST, s->fixed ? count : NULL,
                           rows, &s->writer, error);
 }

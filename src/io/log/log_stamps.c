@@ -182,6 +182,37 @@ imki_log_stamps imki_log_stamps_start(const char *begin, const char *end, double
     return s;
 }
 
+/* Whole seconds, and less than a second of the rest. */
+static bool join(const char *begin, const char *end, const char *rest, const char *rest_end,
+                 int64_t rest_ticks, int64_t *ticks)
+{
+    int64_t more;
+    return read_ticks(begin, end, DIGITS_MOST, ticks) && *ticks % NANOSECONDS == 0 &&
+           read_ticks(rest, rest_end, 0, &more) && more >= 0 && more < NANOSECONDS / rest_ticks &&
+           !__builtin_add_overflow(*ticks, more * rest_ticks, ticks);
+}
+
+imki_log_stamps imki_log_stamps_join(const char *begin, const char *end, const char *rest,
+                                     const char *rest_end, int64_t rest_ticks)
+{
+    imki_log_stamps s = {.digits = DIGITS_MOST, .per_unit = NANOSECONDS, .rest_ticks = rest_ticks};
+    s.exact = join(begin, end, rest, rest_end, rest_ticks, &s.origin);
+    if (s.exact && (double)s.origin <= from_epoch * NANOSECONDS)
+        s.origin = 0;
+    return s;
+}
+
+bool imki_log_stamp_join(const imki_log_stamps *stamps, const char *begin, const char *end,
+                         const char *rest, const char *rest_end, double *value)
+{
+    int64_t ticks;
+    if (!join(begin, end, rest, rest_end, stamps->rest_ticks, &ticks) ||
+        __builtin_sub_overflow(ticks, stamps->origin, &ticks))
+        return false;
+    *value = (double)ticks / stamps->per_unit;
+    return true;
+}
+
 double imki_log_stamps_origin(const imki_log_stamps *stamps)
 {
     return (double)stamps->origin / stamps->per_unit;

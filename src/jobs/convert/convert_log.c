@@ -6,6 +6,7 @@
 #include "convert_motion_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/even_record_internal.h"
 #include "jobs/record/record_check_internal.h"
 
 #include "imukit/names.h"
@@ -230,6 +231,8 @@ imk_status imk_convert_log_run(const imk_record_source *source,
     c.motion = (imki_convert_motion){.settings = settings, .findings = c.findings, .data = c.data};
     c.findings->count = 0;
     status = select_columns(&c, error);
+    if (status == IMK_OK && !settings->select) /* what is selected is known by its name */
+        imki_tell_unused(source->column_count, source->columns, IMK_KINDS, c.findings);
     if (status == IMK_OK)
         status = set_units(&c, error);
     if (status == IMK_OK && (settings->to_point || settings->gravity_free))

@@ -4,7 +4,7 @@
  * resembles a sensor's if a word is the sensor's, give or take a slip, another is an axis, and none
  * says that it is about something else, such as the standard deviation of readings. A unit of
  * another dimension rules a sensor out. Of a sensor that is not read at all, the unit and an axis
- * will do: three columns such as "Drehrate_x [deg/s]". */
+ * will do: three columns such as "Drehrate_x [deg/s]", "roll_rate_dps", "p [rad/s]". */
 #include "even_record_internal.h"
 
 #include "base/text_internal.h"
@@ -53,7 +53,7 @@ static const char *const others[] = {
     "label",    "flag",  "flags",     "valid",      "count",       "counter",     "samples",
     "time",     "stamp", "timestamp", "reference",  "ref",         "true",        "truth",
     "table",    "error", "err",       "quaternion", "quat",        "orientation", "angle",
-    "position", "pos",   "noise",     "residual",   "gravity"};
+    "position", "pos",   "noise",     "residual",   "gravity",     "setpoint",    "target"};
 
 /* With one of these an acceleration has lost its gravity: no reading of an accelerometer. */
 static const char *const gravity_free[] = {"free", "user", "linear", "lin", "grav"};
@@ -189,17 +189,44 @@ static bool has(size_t count, const imk_log_column *columns, int sensor, int axi
     return false;
 }
 
+/* The axis of a rate about it, by the names of angles and of rates in books on flight. */
+static int axis_of_rate(const char *word)
+{
+    static const char *const axes[][2] = {{"roll", "p"}, {"pitch", "q"}, {"yaw", "r"}};
+    for (int axis = 0; axis < 3; axis++)
+        if (strcmp(word, axes[axis][0]) == 0 || strcmp(word, axes[axis][1]) == 0)
+            return axis;
+    return -1;
+}
+
+/* Is it a rate by its unit, which may stand at the end of the name? */
+static bool is_rate(const imk_log_column *column, const words *w)
+{
+    static const char *const ends[] = {"dps", "mdps", "radps"};
+    const imk_dimension none = {0};
+    if (!imk_dimension_equal(column->unit.dimension, none))
+        return imk_dimension_equal(column->unit.dimension, imk_unit_of("rad/s").dimension);
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++)
+        if (w->count > 0 && strcmp(w->word[w->count - 1], ends[i]) == 0)
+            return true;
+    return false;
+}
+
 /* The sensor that a column is by its unit, whatever its name; -1: none. */
 static int sensor_of_unit(const imk_log_column *column, int *axis)
 {
     words w;
     *axis = -1;
     divide(column->name, &w);
+    const bool rate = is_rate(column, &w);
     for (size_t k = 0; k < w.count; k++) {
         if (is_other(w.word[k]))
             return -1;
-        *axis = axis_of(w.word[k]) >= 0 ? axis_of(w.word[k]) : *axis;
+        const int place = axis_of(w.word[k]), about = rate ? axis_of_rate(w.word[k]) : -1;
+        *axis = place >= 0 ? place : about >= 0 ? about : *axis;
     }
+    if (rate && *axis >= 0 && *axis < 3)
+        return IMK_GYRO;
     for (int sensor = 0; sensor < IMK_KINDS && *axis >= 0 && *axis < 3; sensor++)
         if (imk_dimension_equal(column->unit.dimension,
                                 imk_unit_of(sensors[sensor].unit).dimension))

@@ -36,9 +36,10 @@ static void test_each_verb(void **state)
 {
     (void)state;
     write_poses();
-    static const char *const verbs[] = {"allan wrong.csv", "spectrum wrong.csv",
-                                        "identify wrong.csv", "calibrate wrong.csv " POSES,
-                                        "evaluate wrong.csv --motion plan.yaml"};
+    static const char *const verbs[] = {
+        "allan wrong.csv",           "spectrum wrong.csv",
+        "identify wrong.csv",        "calibrate wrong.csv " POSES,
+        "convert wrong.csv out.csv", "evaluate wrong.csv --motion plan.yaml"};
     for (size_t k = 0; k < sizeof verbs / sizeof verbs[0]; k++) {
         check_told("gyro_y/gryo_y", verbs[k], 0,
                    "an axis is missing, and gryo_y, which looks like gyro_y, is not used");
@@ -48,6 +49,14 @@ static void test_each_verb(void **state)
                "a sign in a name does not turn the readings round");
     check_told("gyro_/gryo_/g; s/x/x", "identify wrong.csv --strict", 1,
                "no column is read as gyro_x, gyro_y, gyro_z; gryo_x, gryo_y, gryo_z may be that");
+    check_told("gyro_x/roll_rate/; 1s/gyro_y/pitch_rate/; 1s/gyro_z/yaw_rate",
+               "convert wrong.csv out.csv", 0,
+               "no column is read as gyro_x, gyro_y, gyro_z; roll_rate, pitch_rate, yaw_rate may");
+    check_told("gyro_x [^,]*,gyro_y [^,]*,gyro_z [^,]*/p_dps,q_dps,r_dps",
+               "convert wrong.csv out.csv", 0, "p_dps, q_dps, r_dps may");
+    check_told("gyro_x [^,]*,gyro_y [^,]*,gyro_z [^,]*/roll [deg],pitch [deg],yaw [deg]",
+               "convert wrong.csv out.csv", 0, NULL);
+    check_told("gyro_y/gryo_y", "convert wrong.csv out.csv --select time,gyro_x", 0, NULL);
     check_told("gyro_/gryo_/g; s/accel_/akz_/g; s/x/x", "identify wrong.csv", 0,
                "no column is read as one of a gyro or an accelerometer");
     check_told("time/tempo", "identify wrong.csv", 1, "if tempo is the time, name it so");

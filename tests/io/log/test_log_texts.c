@@ -406,7 +406,7 @@ static void other_names_are_not_read(void **state)
                                         "vel_x",
                                         "cpu_temp",
                                         "max_acc_x",
-                                        "seconds",
+                                        "seconds_of_day",
                                         "ms",
                                         "rate",
                                         "w",

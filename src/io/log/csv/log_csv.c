@@ -128,8 +128,16 @@ static void find_stamps(imk_log_reader *reader, imki_csv *csv)
         if (layout->cell_column[i] == layout->time_column)
             csv->time_cell = i;
     const double scale = layout->factor[layout->time_column];
+    const int64_t ticks = csv->parts.whole == csv->time_cell ? csv->parts.ticks : 0;
     for (size_t row = 0; row < csv->look.rows && !layout->stamps.exact; row++) {
         const char *cell = csv->look.text[row][csv->time_cell];
+        const char *rest = csv->look.text[row][csv->parts.rest];
+        if (ticks > 0) {
+            layout->rest_cell = csv->parts.rest;
+            layout->stamps =
+                imki_log_stamps_join(cell, cell + strlen(cell), rest, rest + strlen(rest), ticks);
+            continue;
+        }
         double value;
         const imki_log_piece piece = {cell, cell + strlen(cell)};
         if (layout->decimal_comma)
@@ -170,6 +178,39 @@ static imk_status look_at_rows(imk_log_reader *reader, imk_error *error)
                                "at least one row of numbers below the header", error);
 }
 
+/* Is each cell of the first rows a whole number from 0 on and below `most`? */
+static bool are_whole(const imki_csv_look *look, size_t cell, double most)
+{
+    double value;
+    for (size_t row = 0; row < look->rows; row++) {
+        const char *text = look->text[row][cell];
+        const imki_log_piece piece = {text, text + strlen(text)};
+        if (imki_log_piece_is_missing(piece))
+            continue;
+        if (!imki_log_piece_is_number(piece, &value) || !(value >= 0 && value < most) ||
+            value != floor(value))
+            return false;
+    }
+    return true;
+}
+
+/* Are two columns the time, the second what is beyond the seconds of the first? They are one. */
+static void find_parts(const imk_log_reader *reader, imki_csv *csv)
+{
+    static const char time[] = "time [s]", skip[] = "-";
+    imki_csv_header *header = &csv->header;
+    imki_log_time_parts parts;
+    if (!imki_log_time_parts_find(header->cell, header->count, &parts) ||
+        !are_whole(&csv->look, parts.whole, 9e9) ||
+        !are_whole(&csv->look, parts.rest, 1e9 / (double)parts.ticks))
+        return;
+    csv->parts = parts;
+    if (reader->settings.map) /* it says itself which one is the time */
+        return;
+    header->cell[parts.whole] = (imki_log_piece){time, time + strlen(time)};
+    header->cell[parts.rest] = (imki_log_piece){skip, skip + 1};
+}
+
 /* The columns of a table whose header is known, and whose first rows are. */
 static imk_status make_layout(imk_log_reader *reader, imki_csv *csv, imk_error *error)
 {
@@ -182,10 +223,17 @@ static imk_status make_layout(imk_log_reader *reader, imki_csv *csv, imk_error *
         layout->date_cell[i] =
             i < csv->look.count[0] && imki_log_date_read(cell, cell + strlen(cell), NULL);
     }
-    imk_status status = imki_csv_choose_sensor(reader, header, error);
+    find_parts(reader, csv);
+    imk_status status = imki_csv_encoding_check(header, error);
+    if (status == IMK_OK)
+        status = imki_csv_choose_sensor(reader, header, error);
     if (status == IMK_OK)
         status =
             imki_log_layout_make(header->cell, header->count, &reader->settings, layout, error);
+    if (status == IMK_OK || status == IMK_ERROR_UNIT_MISSING) {
+        const imk_status dates = imki_csv_dates_check(&csv->look, layout, header->number, error);
+        status = dates != IMK_OK ? dates : status;
+    }
     if ((status == IMK_ERROR_UNIT_MISSING || status == IMK_ERROR_RATE_MISSING) && error) {
         const imki_log_hints hints = imki_csv_hints(&csv->look, layout);
         status = imki_log_missing_refuse(layout, &hints, error);
@@ -217,6 +265,10 @@ static imk_status open_csv(imk_log_reader *reader, imk_error *error)
     if (status != IMK_OK)
         return status;
     find_stamps(reader, csv);
+    if (csv->time_cell < IMK_LOG_COLUMNS_MAX)
+        status = imki_csv_time_unit_check(&csv->look, &reader->layout, csv->time_cell, error);
+    if (status != IMK_OK)
+        return status;
     const size_t line = text->line;
     csv->begin = imki_log_text_place(text);
     text->hold = text->next;

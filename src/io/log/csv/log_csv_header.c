@@ -268,6 +268,13 @@ static imk_status replace_names(const char *columns, bool has_header, imki_csv_h
         const bool skip = name.end - name.begin == 1 && *name.begin == '-';
         imki_log_unit_split(&name, &unit);
         imki_log_unit_split(&own, &own_unit);
+        if (own_unit.begin == own_unit.end)
+            own_unit = imki_log_unit_of_name(own);
+        const imk_status status = has_header && !skip
+                                      ? imki_log_units_agree("columns", own, unit, own_unit, error)
+                                      : IMK_OK;
+        if (status != IMK_OK)
+            return status;
         imki_log_piece_copy(first, sizeof first, name);
         if (unit.begin < unit.end)
             imki_log_piece_copy(second, sizeof second, unit);
@@ -300,7 +307,9 @@ static bool is_unit_row(const imki_csv_header *header, const imki_log_piece *cel
         for (size_t k = 0; k < sizeof none / sizeof none[0]; k++)
             is_none = is_none || strcmp(text, none[k]) == 0;
         imk_unit unit;
-        const bool is_unit = imk_unit_parse(cell.begin, cell.end, &unit, NULL) == IMK_OK;
+        /* Of what is not UTF-8 the unit is told later. */
+        const bool is_unit =
+            imk_unit_parse(cell.begin, cell.end, &unit, NULL) == IMK_OK || !imki_csv_is_utf8(cell);
         if (!is_none && !is_unit)
             return false;
         units += is_unit && !is_none;
@@ -402,6 +411,8 @@ static imk_status name_header(imk_log_reader *reader, imki_log_piece line, char 
     imki_csv_header *header = &((imki_csv *)reader->state)->header;
     reader->layout.separator = separator;
     imk_status status = keep_header(header, line, separator, error);
+    if (status == IMK_OK && !scales)
+        status = imki_csv_preamble_check(reader, error);
     if (status == IMK_OK)
         status = take_units(reader, header, error);
     if (status != IMK_OK)

@@ -39,8 +39,9 @@ typedef struct imki_csv {
     uint64_t begin;             /* byte of the first row */
     imki_csv_header header;
     imki_csv_look look;
-    size_t time_cell; /* IMK_LOG_COLUMNS_MAX: none */
-    imk_error damage; /* of the first row that cannot be read */
+    size_t time_cell;          /* IMK_LOG_COLUMNS_MAX: none */
+    imki_log_time_parts parts; /* ticks 0: none */
+    imk_error damage;          /* of the first row that cannot be read */
 } imki_csv;
 
 typedef struct imki_csv_comment {
@@ -59,12 +60,29 @@ void imki_csv_go_back(imki_log_text *text, size_t line);
 /* Find the header and what the cells of the rows are called; the text is then at the rows. */
 imk_status imki_csv_header_read(imk_log_reader *reader, imk_error *error);
 
+bool imki_csv_is_utf8(imki_log_piece piece);
+/* Refuse units that are not UTF-8, such as the degree sign of Latin-1. Names may be anything.
+ * @return IMK_ERROR_FORMAT */
+imk_status imki_csv_encoding_check(const imki_csv_header *header, imk_error *error);
+/* Refuse a header of fewer than two known names if one with more stands below it.
+ * @return IMK_ERROR_COLUMN */
+imk_status imki_csv_preamble_check(imk_log_reader *reader, imk_error *error);
+/* Refuse times that are dates in words that are not read. @param line  of the header
+ * @return IMK_ERROR_SYNTAX */
+imk_status imki_csv_dates_check(const imki_csv_look *look, const imki_log_layout_read *layout,
+                                size_t line, imk_error *error);
+
 /* Look at the first rows, which stay. */
 void imki_csv_look_at(imk_log_reader *reader, imki_csv_look *look);
 /* Is each number of the rows one with a decimal comma, if it has decimals? */
 bool imki_csv_has_decimal_commas(const imki_csv_look *look, size_t count);
 /* What the rows say of what is missing. */
 imki_log_hints imki_csv_hints(const imki_csv_look *look, const imki_log_layout_read *layout);
+
+/* Refuse a unit by which the times count from beyond 2100, where they can only be of another one.
+ * @param cell  of the time @return IMK_ERROR_CONFLICT */
+imk_status imki_csv_time_unit_check(const imki_csv_look *look, const imki_log_layout_read *layout,
+                                    size_t cell, imk_error *error);
 
 /* Is this a cell with a value, or with a word for none? */
 bool imki_csv_is_value(imki_log_piece cell);

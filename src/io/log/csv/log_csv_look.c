@@ -3,6 +3,8 @@
  * a unit that is missing. */
 #include "log_csv_internal.h"
 
+#include "base/text_internal.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -124,21 +126,92 @@ static void find_time_unit(double first, double step, imki_log_hints *hints)
     hints->time_words = units[fits].words;
 }
 
+/* What the times in a cell of the rows look like. */
+static void look_at_times(const imki_csv_look *look, size_t cell, imki_log_hints *hints)
+{
+    double first = (double)NAN, last = (double)NAN;
+    if (look->rows < 2)
+        return;
+    const size_t row = look->rows - 1;
+    const char *a = look->text[0][cell], *b = look->text[row][cell];
+    if (!imki_log_piece_is_number((imki_log_piece){a, a + strlen(a)}, &first) ||
+        !imki_log_piece_is_number((imki_log_piece){b, b + strlen(b)}, &last))
+        return;
+    find_time_unit(first, (last - first) / (double)row, hints);
+    snprintf(hints->time, sizeof hints->time, "%.31s", a);
+}
+
+/* Has a name one of the words for a time, anywhere in it? */
+static bool names_time(const char *name)
+{
+    static const char *const words[] = {"time", "stamp", "sec", "clock"};
+    for (const char *at = name; *at; at++)
+        for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
+            size_t same = 0;
+            while (words[k][same] && imki_lower(at[same]) == words[k][same])
+                same++;
+            if (!words[k][same])
+                return true;
+        }
+    return false;
+}
+
+/* Do the numbers of a cell increase from row to row? */
+static bool increases(const imki_csv_look *look, size_t cell)
+{
+    double last = -INFINITY, value;
+    for (size_t row = 0; row < look->rows; row++, last = value) {
+        const char *text = look->text[row][cell];
+        if (look->count[row] <= cell ||
+            !imki_log_piece_is_number((imki_log_piece){text, text + strlen(text)}, &value) ||
+            !(value > last))
+            return false;
+    }
+    return look->rows > 1;
+}
+
+static int find_time_like(const imki_csv_look *look, const imki_log_layout_read *layout)
+{
+    for (size_t i = 0; i < layout->cell_count; i++) {
+        const int column = layout->cell_column[i];
+        if (column >= 0 && layout->column[column].quantity == IMK_QUANTITY_OTHER &&
+            names_time(layout->column[column].name) && increases(look, i))
+            return column;
+    }
+    return -1;
+}
+
 imki_log_hints imki_csv_hints(const imki_csv_look *look, const imki_log_layout_read *layout)
 {
-    imki_log_hints hints = {.counts = look_like_counts(look, layout)};
-    for (size_t i = 0; i < layout->cell_count; i++) {
-        double first = (double)NAN, last = (double)NAN;
-        if (layout->cell_column[i] < 0 || layout->cell_column[i] != layout->time_column ||
-            !layout->missing.cell[i] || look->rows < 2)
-            continue;
-        const size_t row = look->rows - 1;
-        const char *a = look->text[0][i], *b = look->text[row][i];
-        if (!imki_log_piece_is_number((imki_log_piece){a, a + strlen(a)}, &first) ||
-            !imki_log_piece_is_number((imki_log_piece){b, b + strlen(b)}, &last))
-            continue;
-        find_time_unit(first, (last - first) / (double)row, &hints);
-        snprintf(hints.time, sizeof hints.time, "%.31s", a);
-    }
+    imki_log_hints hints = {.counts = look_like_counts(look, layout),
+                            .time_like = find_time_like(look, layout)};
+    for (size_t i = 0; i < layout->cell_count; i++)
+        if (layout->cell_column[i] >= 0 && layout->cell_column[i] == layout->time_column &&
+            layout->missing.cell[i])
+            look_at_times(look, i, &hints);
     return hints;
+}
+
+imk_status imki_csv_time_unit_check(const imki_csv_look *look, const imki_log_layout_read *layout,
+                                    size_t cell, imk_error *error)
+{
+    const imk_log_column *column = &layout->column[layout->time_column];
+    const char *text = look->text[0][cell];
+    imki_log_hints hints = {.time_like = -1};
+    double first;
+    char found[128], expected[160];
+    look_at_times(look, cell, &hints);
+    if (!hints.time_unit || layout->date_cell[cell] ||
+        !imki_log_piece_is_number((imki_log_piece){text, text + strlen(text)}, &first) ||
+        first * column->unit.scale <= epoch_last)
+        return IMK_OK;
+    const bool option = column->unit_origin == IMK_UNIT_OF_SETTINGS;
+    snprintf(found, sizeof found, "times such as %.24s are no %.8s: they can only be %s since 1970",
+             hints.time, column->unit.text, hints.time_words);
+    snprintf(
+        expected, sizeof expected, option ? "%s%s" : "%s%s%s",
+        option ? "give --time-unit " : "write the unit ", hints.time_unit,
+        " into the header, or leave this column out with --map or --columns and state --rate RATE");
+    return imk_error_set(error, IMK_ERROR_CONFLICT, option ? "--time-unit" : column->name, found,
+                         expected);
 }

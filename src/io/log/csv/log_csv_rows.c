@@ -148,7 +148,7 @@ static size_t read_plain(imk_log_reader *reader, size_t max_rows, double *const 
     const imki_log_cells cells = {layout->cell_count, layout->separator, layout->cell_factor};
     double *place[IMK_LOG_COLUMNS_MAX];
     const char *begin = text->next;
-    if (layout->decimal_comma || layout->stamps.dates)
+    if (layout->decimal_comma || layout->stamps.dates || layout->stamps.rest_ticks > 0)
         return 0;
     for (size_t i = 0; i < cells.cell_count; i++)
         place[i] = out[i] + first;

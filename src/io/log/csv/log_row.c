@@ -178,11 +178,15 @@ static imk_status refuse_count(imk_error *error, size_t count, size_t due, size_
     return IMK_ERROR_COLUMN;
 }
 
-/* The number of a cell; NaN where there is none. */
+/* The number of a cell; NaN where there is none. @param rest  of a time in two columns */
 static bool read_value(const imki_log_layout_read *layout, int column, imki_log_piece cell,
-                       double *value)
+                       imki_log_piece rest, double *value)
 {
     *value = (double)NAN;
+    if (column == layout->time_column && layout->stamps.rest_ticks > 0)
+        return imki_log_stamp_join(&layout->stamps, cell.begin, cell.end, rest.begin, rest.end,
+                                   value) ||
+               imki_log_piece_is_missing(cell) || imki_log_piece_is_missing(rest);
     if (column == layout->time_column && layout->stamps.exact)
         return imki_log_stamp_read(&layout->stamps, cell.begin, cell.end, value) ||
                imki_log_piece_is_missing(cell) || is_number(layout, cell, value);
@@ -219,10 +223,13 @@ imk_status imki_log_row_read(imki_log_layout_read *layout, imki_log_piece line, 
             values[index] = (double)label;
             continue;
         }
-        if (!read_value(layout, index, cells[i], &value))
+        if (!read_value(layout, index, cells[i], cells[layout->rest_cell], &value))
             return refuse(error, IMK_ERROR_SYNTAX, column->name, cells[i],
-                          layout->decimal_comma ? "a number with a decimal comma, as in the others"
-                                                : "a number with a decimal point",
+                          layout->stamps.rest_ticks > 0 && index == layout->time_column
+                              ? "whole seconds, and less than a second in the column of the rest"
+                          : layout->decimal_comma
+                              ? "a number with a decimal comma, as in the others"
+                              : "a number with a decimal point",
                           line_number, place);
         *not_finite |= !isfinite(value);
         values[index] = value * layout->cell_factor[i];
