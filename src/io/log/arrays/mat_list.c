@@ -249,9 +249,16 @@ static imk_status read_compressed(reading *r, const imki_packed *file, const imk
     if (status != IMK_OK)
         return status;
     status = imki_mat_tag_read(&inner.bytes, 0, UINT64_MAX, &whole, error);
+    if (status == IMK_OK)
+        r->state->source[inner.source].unpacked = inner.bytes.part.packed.unpacked =
+            whole.data + whole.size;
+    const size_t arrays = r->state->rows.list.count;
     if (status == IMK_OK && whole.type == IMKI_MAT_MATRIX)
         status =
             read_array(&inner, (position){"", NULL, 0}, whole.data, whole.data + whole.size, error);
+    /* The checksum of an array is compared when its numbers are read; units are taken here. */
+    if (status == IMK_OK && inner.unit_count > r->unit_count && r->state->rows.list.count == arrays)
+        status = imki_packed_end(&inner.bytes.part, error);
     imki_packed_close(&inner.bytes.part);
     r->elements = inner.elements;
     r->unit_count = inner.unit_count;
