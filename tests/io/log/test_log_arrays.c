@@ -221,6 +221,38 @@ static void streams(void **state)
     assert_string_equal(stream[1].kind, "MATLAB table");
 }
 
+/* A sensor that is there and cannot be read is told and listed: half precision, complex numbers
+ * beside an array of three dimensions, a compression that libhdf5 does not have. */
+static void unread(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *found, *kind;
+        size_t count;
+    } files[] = {{"unread.npz", "gyro", "NumPy array of type <f2", 1},
+                 {"unread.mat", "wide", "MATLAB array of 3 dimensions", 2},
+                 {"unread.h5", "/gyro", "dataset of a compression libhdf5 lacks", 1},
+                 {"plain.mat", "", "", 0}};
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        char path[300];
+        imk_log log;
+        imk_error error;
+        imk_log_stream stream[4];
+        size_t count = 0;
+        const imk_log_settings s = settings_of(&si);
+        snprintf(path, sizeof path, FOLDER "%s", files[i].name);
+        CHECK_OK(imk_log_load(path, &s, NULL, &log, &error));
+        assert_int_equal(log.rows, ROWS);
+        assert_int_equal(log.findings.unread, files[i].count);
+        assert_string_equal(log.findings.unread_name, files[i].found);
+        assert_string_equal(log.findings.unread_kind, files[i].kind);
+        imk_log_free(&log);
+        CHECK_OK(imk_log_streams(path, &s, 4, stream, &count, NULL, &error));
+        assert_int_equal(count, 1 + files[i].count);
+        assert_true(stream[0].readable && (count == 1 || !stream[1].readable));
+    }
+}
+
 /* From the middle: packed arrays cannot, the others give the rows from there. */
 static void seek(void **state)
 {
@@ -405,7 +437,7 @@ int main(void)
         cmocka_unit_test(npz),      cmocka_unit_test(mat),         cmocka_unit_test(hdf5),
         cmocka_unit_test(origin),   cmocka_unit_test(refusals),    cmocka_unit_test(streams),
         cmocka_unit_test(seek),     cmocka_unit_test(cut),         cmocka_unit_test(changed),
-        cmocka_unit_test(checksum), cmocka_unit_test(packed_bits),
+        cmocka_unit_test(checksum), cmocka_unit_test(packed_bits), cmocka_unit_test(unread),
     };
     return cmocka_run_group_tests(tests, set_up, clean_up);
 }
