@@ -86,6 +86,45 @@ static imk_status set_format(imki_row_format *format, size_t column_count,
     return IMK_OK;
 }
 
+void imki_log_select_text(const imki_log_output *log, const char *path, const bool *keep,
+                          size_t size, char *text)
+{
+    const char *ending = strrchr(path, '.');
+    size_t used = (size_t)snprintf(text, size, "imukit convert FILE.csv FILE%.8s --select ",
+                                   ending ? ending : "");
+    const size_t bare = used;
+    for (size_t i = 0; i < log->rows.column_count; i++) {
+        const char *name = log->column[i].name;
+        if (keep[i] && used + strlen(name) + 2 > size) {
+            snprintf(text + bare, size - bare, "NAMES, separated by commas");
+            return;
+        }
+        if (keep[i])
+            used +=
+                (size_t)snprintf(text + used, size - used, "%s%s", used > bare ? "," : "", name);
+    }
+    if (used == bare)
+        text[0] = '\0';
+}
+
+/* Numbers that stand for texts which the file does not hold would be taken for values. */
+static imk_status check_labels(const imki_log_output *log, const char *path, imk_error *error)
+{
+    bool keep[IMK_LOG_COLUMNS_MAX];
+    const char *label = NULL;
+    char expected[160];
+    for (size_t i = 0; i < log->rows.column_count; i++) {
+        keep[i] = !log->column[i].label;
+        label = label || keep[i] ? label : log->column[i].name;
+    }
+    if (!label)
+        return IMK_OK;
+    imki_log_select_text(log, path, keep, sizeof expected, expected);
+    return imk_error_set(error, IMK_ERROR_COLUMN, label,
+                         "the column holds texts, and this format is written with numbers only",
+                         expected[0] ? expected : "a name that ends in .csv");
+}
+
 static imk_status open_files(imk_log_writer *writer, const char *path, imk_error *error)
 {
     const imk_log_format *format;
@@ -94,9 +133,11 @@ static imk_status open_files(imk_log_writer *writer, const char *path, imk_error
         return status;
     writer->codec = imki_log_codec_of(format);
     status = imk_output_file_open(path, &writer->log.file, error);
-    if (status != IMK_OK || !writer->codec->create)
-        return status;
-    return writer->codec->create(&writer->log, path, error);
+    if (status == IMK_OK && writer->codec->create)
+        status = writer->codec->create(&writer->log, path, error);
+    if (status == IMK_OK && writer->codec->format != imki_log_format_text)
+        status = check_labels(&writer->log, path, error);
+    return status;
 }
 
 imk_status imk_log_create(const char *path, size_t column_count, const imk_log_column *columns,
