@@ -86,27 +86,6 @@ static imk_status set_format(imki_row_format *format, size_t column_count,
     return IMK_OK;
 }
 
-void imki_log_select_text(const imki_log_output *log, const char *path, const bool *keep,
-                          size_t size, char *text)
-{
-    const char *ending = strrchr(path, '.');
-    size_t used = (size_t)snprintf(text, size, "imukit convert FILE.csv FILE%.8s --select ",
-                                   ending ? ending : "");
-    const size_t bare = used;
-    for (size_t i = 0; i < log->rows.column_count; i++) {
-        const char *name = log->column[i].name;
-        if (keep[i] && used + strlen(name) + 2 > size) {
-            snprintf(text + bare, size - bare, "NAMES, separated by commas");
-            return;
-        }
-        if (keep[i])
-            used +=
-                (size_t)snprintf(text + used, size - used, "%s%s", used > bare ? "," : "", name);
-    }
-    if (used == bare)
-        text[0] = '\0';
-}
-
 /* Numbers that stand for texts which the file does not hold would be taken for values. */
 static imk_status check_labels(const imki_log_output *log, const char *path, imk_error *error)
 {
