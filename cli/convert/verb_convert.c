@@ -131,8 +131,46 @@ static int set_up_euroc(convert_options *o, imk_log_sink *written)
         o->to.accel_unit.scale > 0 || o->to.time_unit.scale > 0)
         return command_misused("--to euroc has its columns and units: leave --select, --decimals "
                                "and the options for units out");
-    o->to.select = "time,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z";
     written->euroc = true;
+    return -1;
+}
+
+enum { EUROC_COLUMNS = 7, EUROC_NAMES = EUROC_COLUMNS * (sizeof((imk_log_column *)0)->name + 1) };
+
+/* The names of its columns in the log; the others are told. */
+static int select_euroc(const imk_log_reader *reader, const char *in, char names[EUROC_NAMES])
+{
+    static const struct {
+        imk_quantity quantity;
+        int axis;
+    } due[EUROC_COLUMNS] = {{IMK_QUANTITY_TIME, -1},          {IMK_QUANTITY_ANGULAR_RATE, 0},
+                            {IMK_QUANTITY_ANGULAR_RATE, 1},   {IMK_QUANTITY_ANGULAR_RATE, 2},
+                            {IMK_QUANTITY_SPECIFIC_FORCE, 0}, {IMK_QUANTITY_SPECIFIC_FORCE, 1},
+                            {IMK_QUANTITY_SPECIFIC_FORCE, 2}};
+    bool used[IMK_LOG_COLUMNS_MAX] = {false};
+    size_t length = 0, lost = 0;
+    for (size_t i = 0; i < EUROC_COLUMNS; i++) {
+        const int column = imk_log_column_find(reader, due[i].quantity, due[i].axis);
+        const char *lacking = due[i].quantity == IMK_QUANTITY_TIME           ? "a time"
+                              : due[i].quantity == IMK_QUANTITY_ANGULAR_RATE ? "a gyro"
+                                                                             : "an accelerometer";
+        if (column < 0)
+            return command_failed("%s: the EuRoC format has a time, three gyros and three "
+                                  "accelerometers, and the log lacks %s; write a .csv without "
+                                  "--to euroc",
+                                  in, lacking);
+        used[column] = true;
+        length += (size_t)snprintf(names + length, EUROC_NAMES - length, "%s%s", i > 0 ? "," : "",
+                                   imk_log_column_get(reader, (size_t)column)->name);
+    }
+    for (size_t i = 0; i < imk_log_column_count(reader); i++)
+        lost += !used[i];
+    for (size_t i = 0; i < imk_log_column_count(reader); i++)
+        if (!used[i]) {
+            command_warn("lost", "the EuRoC format has no place for %s%s: left out",
+                         imk_log_column_get(reader, i)->name, lost > 1 ? " and other columns" : "");
+            break;
+        }
     return -1;
 }
 
@@ -141,6 +179,7 @@ static int convert_log(convert_options *o, const char *in, const char *out)
     imk_error error;
     imk_findings findings;
     imk_log_reader *reader = NULL;
+    char names[EUROC_NAMES] = "";
     imk_log_sink written = {
         .path = out, .fixed = o->decimals.given, .decimals = (int)o->decimals.value};
     int code = set_up(o);
@@ -148,8 +187,14 @@ static int convert_log(convert_options *o, const char *in, const char *out)
         code = set_up_euroc(o, &written);
     if (code < 0)
         code = log_input_open(&o->log, in, false, &reader);
-    if (code >= 0)
+    if (code < 0 && written.euroc) {
+        code = select_euroc(reader, in, names);
+        o->to.select = names;
+    }
+    if (code >= 0) {
+        imk_log_close(reader);
         return code;
+    }
     threaded_job t;
     threaded_job_begin(&t, in, o->threads.value);
     const imk_record_source source = imk_log_source(reader);

@@ -26,7 +26,8 @@ static const option simulate_option_table[] = {
     {"runs", OPTION_INTEGER, AT(runs), .value = "N", .choices = "1-4294967295",
      .help = "number of runs, from --run on, written to DIR/run_000.csv and so on"},
     {"format", OPTION_TEXT, AT(format), .value = "EXTENSION",
-     .help = "format of the logs of --runs: csv (default), csv.gz, csv.zst, npy, npz, mat or h5"},
+     .help = "format of the logs of --runs: csv (default), csv.gz, csv.zst, npy, npz, mat, h5, "
+             "bag, mcap or db3"},
     {"truth", OPTION_OUTPUT, AT(truth), .value = "FILE",
      .help = "write the true motion and the readings of perfect sensors, row by row"},
     {"increments", OPTION_FLAG, AT(increments),
@@ -90,7 +91,8 @@ static int check_run_folder(const simulate_options *o)
 /* Files that would be written one over the other, or into each other. */
 static int check_outputs(const simulate_options *o)
 {
-    static const char *const formats[] = {"csv", "csv.gz", "csv.zst", "npy", "npz", "mat", "h5"};
+    static const char *const formats[] = {"csv", "csv.gz", "csv.zst", "npy",  "npz",
+                                          "mat", "h5",     "bag",     "mcap", "db3"};
     const char *output = o->output ? o->output : "-";
     if (o->runs.given && !is_directory(o->output))
         return command_misused("--runs writes one log per run into a directory: add -o DIR/");
@@ -100,8 +102,10 @@ static int check_outputs(const simulate_options *o)
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++)
         known = known || strcmp(o->format, formats[i]) == 0;
     if (!known)
-        return command_misused("--format %s: expected csv, csv.gz, csv.zst, npy, npz, mat or h5",
-                               o->format);
+        return command_misused(
+            "--format %s: expected csv, csv.gz, csv.zst, npy, npz, mat, h5, bag, "
+            "mcap or db3",
+            o->format);
     if (o->format && !o->runs.given)
         return command_misused("--format is for --runs: a single log has it in its name, -o LOG.%s",
                                o->format);

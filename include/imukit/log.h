@@ -234,10 +234,11 @@ typedef struct imk_log_writer imk_log_writer;
  *  @param decimals   per column (0 … 17), with IMK_LOG_FIXED; else NULL
  *  @param row_count  number of rows if known, else 0. Only a .npy that is not a plain file (a pipe,
  *                    compressed) needs it, and then exactly.
- *  @return IMK_ERROR_OPEN, IMK_ERROR_COLUMN (a name; a column that the format does not hold),
- *          IMK_ERROR_ARGUMENT (a unit or decimals), IMK_ERROR_UNSUPPORTED (the ending; a format
- *          that needs a plain file; a .npy that needs row_count; more rows than a .mat holds),
- *          IMK_ERROR_WRITE (no temporary file), IMK_ERROR_MEMORY */
+ *  @return IMK_ERROR_OPEN, IMK_ERROR_COLUMN (a name; a column that the format does not hold,
+ *          as a label column in any but a CSV), IMK_ERROR_ARGUMENT (a unit or decimals),
+ *          IMK_ERROR_UNSUPPORTED (the ending; a format that needs a plain file; a .npy that needs
+ *          row_count; more rows than a .mat holds), IMK_ERROR_WRITE (no temporary file),
+ *          IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_create(const char *path, size_t column_count,
                                   const imk_log_column *columns, imk_log_precision precision,
                                   const int *decimals, uint64_t row_count, imk_log_writer **writer,
@@ -248,8 +249,8 @@ IMK_API imk_status imk_log_comment(imk_log_writer *writer, const char *text);
 /** Function that gives the text for a value of a label column; NULL: there is none. */
 typedef const char *(*imk_log_label_lookup)(void *context, size_t index);
 /** State the function that gives the texts of label columns of a CSV; call this before the first
- *  row. Without `lookup`, where it returns NULL, and in a .npy, the index is written. With an
- *  executor in imk_log_write(), several threads call `lookup` at once. */
+ *  row. Without `lookup`, and where it returns NULL, the index is written. With an executor in
+ *  imk_log_write(), several threads call `lookup` at once. */
 IMK_API void imk_log_write_labels(imk_log_writer *writer, imk_log_label_lookup lookup,
                                   void *context);
 /** Add rows from one array per column, SI. @param executor  formats blocks in parallel while

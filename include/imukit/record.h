@@ -101,6 +101,10 @@ typedef struct imk_log_findings {
                                             once more; rows before the first */
     bool cut_short; /**< the file ends within a row, message or block, which is left out */
     bool received;  /**< the times are those of recording: no message says when it was measured */
+    /** Arrays of the file, beside those that are read, that cannot be: of a sensor by their names,
+     *  or of the group that is read; the first. */
+    size_t unread;
+    char unread_name[56], unread_kind[40];
 } imk_log_findings;
 
 /** Where the rows of a record come from. A function that the source does not offer is NULL. */

@@ -89,6 +89,8 @@ static const struct message {
                   "copy it again"},
     {"received", "the stamps of the messages are all 0; the times at which they were recorded are "
                  "used, which have the jitter of their way"},
+    {"unread", "{0} array{0s} of the file cannot be read: left out, the first is {name}, a "
+               "{other}; if a sensor is in it, write it as a vector or matrix of numbers"},
     {"unordered", UNORDERED},
     {"stamps:unordered", UNORDERED},
     {"missing",

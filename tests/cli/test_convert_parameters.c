@@ -169,6 +169,16 @@ static void test_refused(void **state)
     check_contains(err, "are for parameter files", "log.csv");
     assert_int_equal(run("$I convert log.csv out.csv --to euroc --select time"), 2);
     check_contains(err, "--to euroc has its columns and units", "log.csv");
+    assert_int_equal(run("$I convert log.csv out.csv --to euroc"), 1);
+    check_contains(err,
+                   "has a time, three gyros and three accelerometers, and the log lacks a gyro",
+                   "log.csv");
+    put("log.csv",
+        "time [s],gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s],accel_x [m/s^2],accel_y "
+        "[m/s^2],accel_z [m/s^2],temperature [degC]\n0,1,2,3,4,5,6,20\n1,1,2,3,4,5,6,20\n");
+    assert_int_equal(run("$I convert log.csv - --to euroc"), 0);
+    check_contains(err, "the EuRoC format has no place for temperature: left out", "log.csv");
+    check_contains(out, "\n1000000000,1,2,3,4,5,6\n", "log.csv");
     put("unit.yaml", "imukit: 1\n");
     assert_int_equal(run("$I convert unit.yaml out.yaml --to euroc && rm unit.yaml"), 2);
     check_contains(err, "--to euroc is for logs, and unit.yaml is a model", "unit.yaml");

@@ -91,6 +91,10 @@ const imk_log_format *imki_log_recognise(const char *path, const char *begin, si
 /* The format that reads folders. NULL: none. */
 const imk_log_format *imki_log_format_of_folders(void);
 
+/* The command that leaves columns out; "" if nothing would remain.
+ * @param keep  per column of the log */
+void imki_log_select_text(const imki_log_output *log, const char *path, const bool *keep,
+                          size_t size, char *text);
 /* `name [unit]` of each column, each but the last followed by `separator`. */
 void imki_log_names_write(imk_output_file *file, size_t column_count, const imk_log_column *columns,
                           char separator);

@@ -453,6 +453,9 @@ imk_log_findings imk_log_findings_get(const imk_log_reader *reader)
     found.first_header = reader->first_header;
     found.cut_short = reader->cut_short;
     found.received = reader->received;
+    found.unread = reader->unread;
+    memcpy(found.unread_name, reader->unread_name, sizeof found.unread_name);
+    memcpy(found.unread_kind, reader->unread_kind, sizeof found.unread_kind);
     if (reader->layout.time_column < 0 && reader->rows > 0)
         found.last_time = (double)(reader->rows - 1) / reader->rate;
     return found;

@@ -144,6 +144,8 @@ struct imk_log_reader {
     size_t damaged_line, damaged_column; /* of the first, in a text */
     size_t headers, first_header;        /* of a text, once more between its rows */
     bool cut_short;
+    size_t unread; /* arrays, as in imk_log_findings */
+    char unread_name[56], unread_kind[40];
     bool received;      /* the times are those of recording, as the stamps are all 0 */
     double rate;        /* [Hz]; 0: from the times */
     double time_origin; /* in the unit of the file */

@@ -86,6 +86,24 @@ static imk_status set_format(imki_row_format *format, size_t column_count,
     return IMK_OK;
 }
 
+/* Numbers that stand for texts which the file does not hold would be taken for values. */
+static imk_status check_labels(const imki_log_output *log, const char *path, imk_error *error)
+{
+    bool keep[IMK_LOG_COLUMNS_MAX];
+    const char *label = NULL;
+    char expected[160];
+    for (size_t i = 0; i < log->rows.column_count; i++) {
+        keep[i] = !log->column[i].label;
+        label = label || keep[i] ? label : log->column[i].name;
+    }
+    if (!label)
+        return IMK_OK;
+    imki_log_select_text(log, path, keep, sizeof expected, expected);
+    return imk_error_set(error, IMK_ERROR_COLUMN, label,
+                         "the column holds texts, and this format is written with numbers only",
+                         expected[0] ? expected : "a name that ends in .csv");
+}
+
 static imk_status open_files(imk_log_writer *writer, const char *path, imk_error *error)
 {
     const imk_log_format *format;
@@ -94,9 +112,11 @@ static imk_status open_files(imk_log_writer *writer, const char *path, imk_error
         return status;
     writer->codec = imki_log_codec_of(format);
     status = imk_output_file_open(path, &writer->log.file, error);
-    if (status != IMK_OK || !writer->codec->create)
-        return status;
-    return writer->codec->create(&writer->log, path, error);
+    if (status == IMK_OK && writer->codec->create)
+        status = writer->codec->create(&writer->log, path, error);
+    if (status == IMK_OK && writer->codec->format != imki_log_format_text)
+        status = check_labels(&writer->log, path, error);
+    return status;
 }
 
 imk_status imk_log_create(const char *path, size_t column_count, const imk_log_column *columns,

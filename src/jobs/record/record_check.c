@@ -97,4 +97,9 @@ void imki_tell_damage(const imk_record_source *source, imk_findings *findings)
         imki_find(findings, IMK_FINDING_WARNING, "cut_short", NULL, IMKI_NUMBERS((double)f.rows));
     if (f.received)
         imki_find(findings, IMK_FINDING_WARNING, "received", NULL, 0, NULL);
+    if (f.unread > 0) {
+        char both[96];
+        snprintf(both, sizeof both, "%s\t%s", f.unread_name, f.unread_kind);
+        imki_find(findings, IMK_FINDING_WARNING, "unread", both, IMKI_NUMBERS((double)f.unread));
+    }
 }

@@ -170,6 +170,29 @@ static void check_name(const char *path, uint64_t rows, imk_status due, const ch
 }
 
 /* Which names are those of a log, and which of them of one that can be written. */
+/* Texts have no place: refused with the columns that have. */
+static void labels(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {"log.npy", "log.npz", "log.mat", "log.h5"};
+    imk_log_column column[] = {column_of("time", "s"), column_of("phase", ""),
+                               column_of("gyro_y", "rad/s")};
+    column[1].label = true;
+    for (size_t i = 0; i < 4; i++) {
+        imk_log_writer *writer = NULL;
+        imk_error error;
+        char due[100];
+        CHECK_STATUS(
+            imk_log_create(paths[i], 3, column, IMK_LOG_SHORTEST, NULL, 0, &writer, &error),
+            IMK_ERROR_COLUMN);
+        assert_string_equal(error.field, "phase");
+        snprintf(due, sizeof due, "imukit convert FILE.csv FILE%s --select time,gyro_y",
+                 strchr(paths[i], '.'));
+        assert_string_equal(error.expected, due);
+        assert_int_not_equal(access(paths[i], F_OK), 0);
+    }
+}
+
 static void file_names(void **state)
 {
     (void)state;
@@ -209,6 +232,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blocks),     cmocka_unit_test(names),     cmocka_unit_test(empty),
         cmocka_unit_test(same_bytes), cmocka_unit_test(abandoned), cmocka_unit_test(file_names),
+        cmocka_unit_test(labels),
     };
     return cmocka_run_group_tests(tests, set_up, clean_up);
 }

@@ -382,6 +382,39 @@ static void test_wrong_sum(void **state)
     free(bytes);
 }
 
+/* One bit of the header of a chunk or of a record in it: rows that are missing then are told. */
+static void test_header_bits(void **state)
+{
+    (void)state;
+    static bag_table t;
+    static const char *const keys[] = {"op=\5", "op=\2", "op=\7", "compression=", "size=", "conn="};
+    size_t size;
+    char *bytes = bag_bytes(BAGS "none.bag", &size);
+    for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
+        size_t lost = 0;
+        for (size_t at = 13; at + 12 < size; at++)
+            for (size_t i = 0; i < strlen(keys[k]) && !memcmp(bytes + at, keys[k], strlen(keys[k]));
+                 i++)
+                for (int bit = 0; bit < 8; bit++) {
+                    imk_log_reader *reader = NULL;
+                    imk_error error = {.status = IMK_OK};
+                    bytes[at + i] ^= (char)(1 << bit);
+                    imk_status status = imk_log_open_memory(bytes, size, NULL, &reader, &error);
+                    if (status == IMK_OK)
+                        status = bag_read(reader, 100, &t, &error);
+                    if (status == IMK_OK && t.rows < SAMPLES) {
+                        lost++;
+                        if (t.findings.damaged == 0)
+                            fail_msg("%s: byte %zu, bit %d", keys[k], at + i, bit);
+                    }
+                    imk_log_close(reader);
+                    bytes[at + i] ^= (char)(1 << bit);
+                }
+        assert_true(lost > 0 || k > 1);
+    }
+    free(bytes);
+}
+
 /* Any byte may be another: nothing is read that is no row, nothing hangs. */
 static void test_any_byte(void **state)
 {
@@ -436,6 +469,39 @@ static void test_refusals(void **state)
             bytes[at] = 'M', bytes[at + 1] = 'x';
     bag_save(path, bytes, size);
     bag_refused(path, NULL, IMK_ERROR_FORMAT, "no tables", "ROS 2");
+    remove(path);
+    free(bytes);
+}
+
+/* Why there is no Imu: another encoding, damage, an end before the first message. */
+static void test_none_readable(void **state)
+{
+    (void)state;
+    char path[256];
+    size_t size;
+    char *bytes = bag_bytes(BAGS "single.db3", &size);
+    for (size_t at = 0; at + 3 < size; at++)
+        if (memcmp(bytes + at, "cdr", 3) == 0)
+            memcpy(bytes + at, "foo", 3);
+    bag_save(bag_path("other.db3", path), bytes, size);
+    bag_refused(path, NULL, IMK_ERROR_EMPTY,
+                "the messages sensor_msgs/msg/Imu are in the encoding \"foo\"", "in cdr");
+    remove(path);
+    free(bytes);
+    bytes = bag_bytes(BAGS "cdr_none.mcap", &size);
+    size_t last = 0; /* the last message; what is behind, and knows the topics, is cut off */
+    for (size_t at = 0; at + 7 < size; at++)
+        last = memcmp(bytes + at, "sensor\0", 7) == 0 ? at : last;
+    for (size_t at = 0; at < last; at++) /* every chunk has one */
+        if (memcmp(bytes + at, "sensor\0", 7) == 0)
+            bytes[at + 120] ^= 1;
+    bag_save(bag_path("damaged.mcap", path), bytes, last);
+    bag_refused(path, NULL, IMK_ERROR_EMPTY, "no sensor_msgs/Imu can be read, and ", "again");
+    remove(path);
+    free(bytes);
+    bytes = bag_bytes(BAGS "none.bag", &size);
+    bag_save(bag_path("cut.bag", path), bytes, 200);
+    bag_refused(path, NULL, IMK_ERROR_EMPTY, "the log is cut short", "copy the file again");
     remove(path);
     free(bytes);
 }
@@ -512,8 +578,10 @@ int main(void)
         cmocka_unit_test(test_no_seek_in_a_pipe),
         cmocka_unit_test(test_cut_short),
         cmocka_unit_test(test_wrong_sum),
+        cmocka_unit_test(test_header_bits),
         cmocka_unit_test(test_any_byte),
         cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_none_readable),
         cmocka_unit_test(test_metadata_refusals),
         cmocka_unit_test(test_messages),
     };

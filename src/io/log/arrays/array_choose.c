@@ -133,6 +133,37 @@ static bool is_sensor(const imki_array *array)
     return false;
 }
 
+bool imki_array_is_sensor(const char *name)
+{
+    imki_array array = {.parts = 1};
+    snprintf(array.name, sizeof array.name, "%.*s", (int)strcspn(name, " [("), name);
+    bool sensor = is_sensor(&array);
+    array.parts = 3;
+    sensor = sensor || is_sensor(&array);
+    return sensor;
+}
+
+/* Arrays that a reader of the log will miss: those beside the arrays that are read, and, unless a
+ * group was asked for, those of sensors anywhere. */
+static void tell_unread(imk_log_reader *reader, const imki_array_list *list, const char *group)
+{
+    for (size_t i = 0; i < list->other_count; i++) {
+        const imki_array_other *other = &list->other[i];
+        const char *last = NULL; /* separator before the name, which may have a unit */
+        for (const char *c = other->name; *c && *c != '[' && *c != '('; c++)
+            last = *c == list->separator ? c : last;
+        const size_t length = last ? (size_t)(last - other->name) : 0;
+        const bool beside = strlen(group) == length && strncmp(group, other->name, length) == 0;
+        const bool sensor = imki_array_is_sensor(last ? last + 1 : other->name);
+        if (!beside && (!sensor || reader->settings.topic))
+            continue;
+        if (reader->unread++ > 0)
+            continue;
+        imki_copy_text(reader->unread_name, sizeof reader->unread_name, other->name);
+        imki_copy_text(reader->unread_kind, sizeof reader->unread_kind, other->kind);
+    }
+}
+
 /* Where no name in the file is known, what could be named by --columns is readable.
  * @param asked  so it is where that is asked for */
 static size_t find_groups(imki_array_list *list, bool asked, group_of_arrays *group)
@@ -220,6 +251,10 @@ static imk_status refuse_others(const imki_array_list *list, imk_error *error)
     static const struct {
         const char *word, *remedy;
     } remedies[] = {
+        {"complex", "write its real part, as a vector or matrix of numbers"},
+        {"dimensions", "write it as a matrix of two: a row for each sample"},
+        {"fields", "write each of them as a vector of its own"},
+        {"NumPy", "write it as float64: numpy.savez(FILE, gyro=gyro.astype('f8'))"},
         {"MATLAB", "write it in MATLAB as a CSV: writetable(TABLE, 'log.csv'), for a timetable "
                    "writetimetable()"},
         {"record", "write its fields: numpy.savez(FILE, **{n: table[n] for n in "
@@ -306,5 +341,6 @@ imk_status imki_arrays_choose(imk_log_reader *reader, imki_array_list *list,
         return status;
     const imki_array *first = &list->array[group[of[chosen]].first];
     *rows = first->rows;
+    tell_unread(reader, list, first->group);
     return take_columns(reader, list, first, column, error);
 }

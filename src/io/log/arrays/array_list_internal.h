@@ -45,7 +45,7 @@ typedef struct imki_array {
     int along;    /* dimension of the rows */
 } imki_array;
 
-/* What is there and cannot be read as numbers, such as a MATLAB table. */
+/* What is there and cannot be read as numbers, such as a MATLAB table; its name with its group. */
 typedef struct imki_array_other {
     char name[96], kind[64];
 } imki_array_other;
@@ -54,7 +54,7 @@ typedef struct imki_array_other {
 typedef struct imki_array_list {
     imki_array *array;
     size_t count, room;
-    imki_array_other other[16];
+    imki_array_other other[64];
     size_t other_count;
     char separator; /* between the names of groups */
 } imki_array_list;
@@ -68,6 +68,8 @@ typedef struct imki_array_column {
  * @return IMK_ERROR_MEMORY, IMK_ERROR_UNSUPPORTED (more than IMKI_ARRAYS_MAX) */
 imk_status imki_array_add(imki_array_list *list, const imki_array *array, imk_error *error);
 void imki_array_note(imki_array_list *list, const char *name, const char *kind);
+/* Is the name, without a group, that of a gyro or an accelerometer? */
+bool imki_array_is_sensor(const char *name);
 /* State the unit of an array by its name, if it has none. */
 void imki_array_unit(imki_array_list *list, const char *group, const char *name, const char *unit);
 void imki_array_list_free(imki_array_list *list);

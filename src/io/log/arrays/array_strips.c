@@ -129,6 +129,8 @@ static imk_status open_strips(imki_array_strips *state, imk_error *error)
         const bool packed = state->source[source].packing != IMKI_PLAIN;
         if (packed && strips > 1)
             status = unpack(state, source, most, error);
+        else if (strips > 1 && state->source[source].has_crc)
+            status = imki_packed_check(&state->source[source], error);
         state->source[source].has_crc = state->source[source].has_crc && strips == 1;
         state->packed = state->packed || (packed && strips == 1);
     }
@@ -137,7 +139,7 @@ static imk_status open_strips(imki_array_strips *state, imk_error *error)
     return status;
 }
 
-/* As imki_array_rows.load. */
+/* As imki_array_rows.load. The last rows are given when the checksum holds. */
 static imk_status load(imk_log_reader *reader, imk_error *error)
 {
     imki_array_strips *state = reader->state;
@@ -146,8 +148,10 @@ static imk_status load(imk_log_reader *reader, imk_error *error)
     for (size_t i = 0; i < state->strip_count; i++) {
         imki_strip *strip = &state->strip[i];
         const uint64_t place = strip->begin + state->rows.begin * strip->record;
-        const imk_status status =
+        imk_status status =
             imki_packed_read(&strip->part, place, strip->buffer, count * strip->record, error);
+        if (status == IMK_OK && count == left)
+            status = imki_packed_end(&strip->part, error);
         if (status != IMK_OK)
             return status;
     }

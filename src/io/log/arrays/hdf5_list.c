@@ -185,6 +185,39 @@ static bool is_numbers_of_matlab(walk *w, hid_t dataset, const char *path, const
     return false;
 }
 
+/* Records of a real and an imaginary part, as h5py writes complex numbers. */
+static bool is_complex(hid_t type)
+{
+    bool parts = H5Tget_class(type) == H5T_COMPOUND && H5Tget_nmembers(type) == 2;
+    for (unsigned i = 0; i < 2 && parts; i++) {
+        char *name = H5Tget_member_name(type, i);
+        parts = name && (strcmp(name, i == 0 ? "r" : "i") == 0 ||
+                         strcmp(name, i == 0 ? "real" : "imag") == 0);
+        H5free_memory(name);
+    }
+    return parts;
+}
+
+/* What a dataset is whose values are none that are read; texts are none that a log would lack.
+ * @return false: there is nothing to say */
+static bool find_kind(hid_t type, int rank, size_t size, char *kind)
+{
+    const H5T_class_t class = H5Tget_class(type);
+    if (is_complex(type))
+        snprintf(kind, size, "dataset of complex numbers");
+    else if (class == H5T_COMPOUND)
+        snprintf(kind, size, "dataset of %d dimensions whose values have fields", rank);
+    else if (class == H5T_FLOAT || class == H5T_INTEGER)
+        snprintf(kind, size, "dataset of %d dimensions", rank);
+    else if (class == H5T_ENUM || class == H5T_ARRAY || class == H5T_BITFIELD)
+        snprintf(kind, size, "dataset of lists, words or bits");
+    else if (class == H5T_VLEN)
+        snprintf(kind, size, "dataset of lists of any length");
+    else
+        return false;
+    return true;
+}
+
 static void visit_dataset(walk *w, hid_t dataset, const char *path)
 {
     char class[IMKI_ARRAY_LABELS];
@@ -211,12 +244,16 @@ static void visit_dataset(walk *w, hid_t dataset, const char *path)
     }
     array.extent[0] = extent[array.flipped];
     array.extent[1] = extent[!array.flipped];
-    const bool records = H5Tget_class(type) == H5T_COMPOUND && array.rank == 1;
+    const bool records = H5Tget_class(type) == H5T_COMPOUND && array.rank == 1 && !is_complex(type);
+    const bool unread = !fits || (numbers && !records && !find_type(type, &array.type));
+    char kind[64];
     const char *obstacle = numbers && (records || find_type(type, &array.type))
                                ? imki_hdf5_obstacle(dataset, values, w->file_size)
                                : NULL;
     if (obstacle)
         note(w, path, obstacle);
+    else if (unread && array.rank >= 0 && find_kind(type, array.rank, sizeof kind, kind))
+        note(w, path, kind);
     else if (numbers && records)
         send_members(w, dataset, type, &array, path);
     else if (numbers && find_type(type, &array.type))

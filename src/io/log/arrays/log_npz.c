@@ -133,6 +133,24 @@ static imk_status check_size(const imki_zip_member *member, const imki_array *ar
     return imk_error_set(error, IMK_ERROR_FORMAT, "", found, "copy the file again");
 }
 
+/* What is no array of numbers, but of texts, is none that a log would lack. */
+static void note(imki_array_list *list, const imki_zip_member *member, const imki_npy_array *npy)
+{
+    char name[sizeof member->name], kind[64];
+    const char type = npy->type[0] ? npy->type[1] : '\0';
+    snprintf(name, sizeof name, "%.*s", (int)(strlen(member->name) - 4), member->name);
+    if (type == 'c')
+        snprintf(kind, sizeof kind, "NumPy array of complex numbers");
+    else if (type && strchr("fiubM", type) && npy->dimensions > 2)
+        snprintf(kind, sizeof kind, "NumPy array of %zu dimensions", npy->dimensions);
+    else if (type)
+        snprintf(kind, sizeof kind, "NumPy array of type %.14s", npy->type + (*npy->type == '|'));
+    else
+        snprintf(kind, sizeof kind, "record array");
+    if (!type || !strchr("US", type))
+        imki_array_note(list, name, kind);
+}
+
 static imk_status add_array(reading *r, const imki_zip_member *member, const imki_packed *packed,
                             const imki_npy_array *npy, imk_error *error)
 {
@@ -149,10 +167,10 @@ static imk_status add_array(reading *r, const imki_zip_member *member, const imk
         imki_copy_text(array.group, sizeof array.group, name);
     }
     imki_copy_text(array.name, sizeof array.name, slash ? slash + 1 : name);
-    if (npy->type[0] == '\0')
-        imki_array_note(&state->rows.list, name, "record array");
-    if (!find_type(npy, &array) || !find_extent(npy, &array))
+    if (!find_type(npy, &array) || !find_extent(npy, &array)) {
+        note(&state->rows.list, member, npy);
         return IMK_OK;
+    }
     imk_status status = check_size(member, &array, error);
     if (status == IMK_OK)
         status = imki_array_add(&state->rows.list, &array, error);

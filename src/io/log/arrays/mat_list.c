@@ -72,6 +72,13 @@ static bool find_type(uint32_t type, imki_value_type *found)
     return false;
 }
 
+static void note(reading *r, const position *at, const char *kind)
+{
+    char name[96];
+    snprintf(name, sizeof name, "%.47s%s%.47s", at->group, at->group[0] ? "." : "", at->name);
+    imki_array_note(&r->state->rows.list, name, kind);
+}
+
 static imk_status add_numbers(reading *r, const position *at, const imki_mat_head *head,
                               uint64_t end, imk_error *error)
 {
@@ -81,8 +88,15 @@ static imk_status add_numbers(reading *r, const position *at, const imki_mat_hea
     if (status != IMK_OK)
         return status;
     const uint64_t count = head->extent[0] * head->extent[1]; /* each below 2^31 */
-    if (head->dimensions != 2 || head->complex || count == 0)
+    if (count == 0)
         return IMK_OK;
+    if (head->dimensions != 2 || head->complex) {
+        char kind[64] = "MATLAB array of complex numbers";
+        if (!head->complex)
+            snprintf(kind, sizeof kind, "MATLAB array of %zu dimensions", head->dimensions);
+        note(r, at, kind);
+        return IMK_OK;
+    }
     if (!find_type(tag.type, &array.type) || tag.size / imki_value_size(array.type) < count)
         return refuse("an array of the MAT-file is damaged", error);
     imki_copy_text(array.group, sizeof array.group, at->group);
@@ -205,10 +219,18 @@ static imk_status read_structure(reading *r, const position *at, const imki_mat_
 /* Tables and the like. */
 static void note_opaque(reading *r, const position *at, const imki_mat_head *head)
 {
-    char name[96], kind[64];
-    snprintf(name, sizeof name, "%.47s%s%.47s", at->group, at->group[0] ? "." : "", at->name);
+    char kind[64];
     snprintf(kind, sizeof kind, "MATLAB %.40s", head->type_name);
-    imki_array_note(&r->state->rows.list, name, kind);
+    note(r, at, kind);
+}
+
+/* Cells and sparse matrices hold what is no sample, unless they are called like a sensor. */
+static void note_sensor(reading *r, const position *at, const imki_mat_head *head)
+{
+    if (imki_array_is_sensor(at->name) && head->array_class == IMKI_MAT_CELL)
+        note(r, at, "MATLAB cell array");
+    if (imki_array_is_sensor(at->name) && head->array_class == IMKI_MAT_SPARSE)
+        note(r, at, "MATLAB array that is sparse");
 }
 
 /* The array whose data are from `from` to `end`. */
@@ -223,6 +245,7 @@ static imk_status read_array(reading *r, position at, uint64_t from, uint64_t en
     at.name = at.name ? at.name : head.name;
     if (head.array_class == IMKI_MAT_OPAQUE && at.name[0])
         note_opaque(r, &at, &head);
+    note_sensor(r, &at, &head);
     if (head.array_class == IMKI_MAT_STRUCT)
         return read_structure(r, &at, &head, end, error);
     if (head.array_class == IMKI_MAT_CHAR)
@@ -249,9 +272,16 @@ static imk_status read_compressed(reading *r, const imki_packed *file, const imk
     if (status != IMK_OK)
         return status;
     status = imki_mat_tag_read(&inner.bytes, 0, UINT64_MAX, &whole, error);
+    if (status == IMK_OK)
+        r->state->source[inner.source].unpacked = inner.bytes.part.packed.unpacked =
+            whole.data + whole.size;
+    const size_t arrays = r->state->rows.list.count;
     if (status == IMK_OK && whole.type == IMKI_MAT_MATRIX)
         status =
             read_array(&inner, (position){"", NULL, 0}, whole.data, whole.data + whole.size, error);
+    /* The checksum of an array is compared when its numbers are read; units are taken here. */
+    if (status == IMK_OK && inner.unit_count > r->unit_count && r->state->rows.list.count == arrays)
+        status = imki_packed_end(&inner.bytes.part, error);
     imki_packed_close(&inner.bytes.part);
     r->elements = inner.elements;
     r->unit_count = inner.unit_count;

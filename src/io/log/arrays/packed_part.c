@@ -59,6 +59,31 @@ static imk_status read_file(imki_unpacking *part, uint64_t place, void *bytes, s
     return number < 0 ? damaged(part, "is cut short", error) : IMK_OK;
 }
 
+/* One call of zlib, with more of the file where it needs that. */
+static imk_status inflate_step(imki_unpacking *part, imk_error *error)
+{
+    z_stream *z = &part->inflater;
+    const uint64_t left = part->packed.size - part->taken;
+    if (z->avail_in == 0 && left > 0) {
+        const size_t count = left < RAW ? (size_t)left : RAW;
+        const imk_status status = read_file(part, part->taken, part->raw, count, error);
+        if (status != IMK_OK)
+            return status;
+        part->taken += count;
+        z->next_in = part->raw;
+        z->avail_in = (uInt)count;
+    }
+    const int result = part->ended ? Z_BUF_ERROR : inflate(z, Z_NO_FLUSH);
+    part->ended = part->ended || result == Z_STREAM_END;
+    if (result == Z_MEM_ERROR)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    if (result == Z_BUF_ERROR && z->avail_in == 0 && part->taken == part->packed.size)
+        return damaged(part, "is cut short", error);
+    return result == Z_OK || result == Z_STREAM_END
+               ? IMK_OK
+               : damaged(part, "has damaged compressed data", error);
+}
+
 /* Inflate until the bytes are there. */
 static imk_status inflate_next(imki_unpacking *part, unsigned char *bytes, size_t size,
                                imk_error *error)
@@ -67,24 +92,27 @@ static imk_status inflate_next(imki_unpacking *part, unsigned char *bytes, size_
     z->next_out = bytes;
     z->avail_out = (uInt)size;
     while (z->avail_out > 0) {
-        const uint64_t left = part->packed.size - part->taken;
-        if (z->avail_in == 0 && left > 0) {
-            const size_t count = left < RAW ? (size_t)left : RAW;
-            const imk_status status = read_file(part, part->taken, part->raw, count, error);
-            if (status != IMK_OK)
-                return status;
-            part->taken += count;
-            z->next_in = part->raw;
-            z->avail_in = (uInt)count;
-        }
-        const int result = part->ended ? Z_BUF_ERROR : inflate(z, Z_NO_FLUSH);
-        part->ended = part->ended || result == Z_STREAM_END;
-        if (result == Z_MEM_ERROR)
-            return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
-        if (result == Z_BUF_ERROR && z->avail_in == 0 && part->taken == part->packed.size)
-            return damaged(part, "is cut short", error);
-        if (result != Z_OK && (result != Z_STREAM_END || z->avail_out > 0))
+        const imk_status status = inflate_step(part, error);
+        if (status != IMK_OK)
+            return status;
+        if (part->ended && z->avail_out > 0)
             return damaged(part, "has damaged compressed data", error);
+    }
+    return IMK_OK;
+}
+
+/* zlib compares its checksum when it meets the end. A few bytes may fill up what was packed. */
+static imk_status inflate_end(imki_unpacking *part, imk_error *error)
+{
+    unsigned char beyond[8];
+    part->inflater.next_out = beyond;
+    part->inflater.avail_out = sizeof beyond;
+    while (!part->ended) {
+        if (part->inflater.avail_out == 0)
+            return damaged(part, "goes on behind what its head states", error);
+        const imk_status status = inflate_step(part, error);
+        if (status != IMK_OK)
+            return status;
     }
     return IMK_OK;
 }
@@ -140,6 +168,29 @@ imk_status imki_packed_read(imki_unpacking *part, uint64_t place, void *bytes, s
     return next(part, bytes, size, error);
 }
 
+imk_status imki_packed_end(imki_unpacking *part, imk_error *error)
+{
+    unsigned char passed[PASSED];
+    const bool has_end = part->packed.packing == IMKI_ZLIB;
+    while ((part->crc_holds || has_end) && part->place < part->packed.unpacked) {
+        const uint64_t left = part->packed.unpacked - part->place;
+        const imk_status status = next(part, passed, left < PASSED ? (size_t)left : PASSED, error);
+        if (status != IMK_OK)
+            return status;
+    }
+    return has_end ? inflate_end(part, error) : IMK_OK;
+}
+
+imk_status imki_packed_check(const imki_packed *packed, imk_error *error)
+{
+    imki_unpacking part;
+    imk_status status = imki_packed_open(packed, &part, error);
+    if (status == IMK_OK)
+        status = imki_packed_end(&part, error);
+    imki_packed_close(&part);
+    return status;
+}
+
 static imk_status put(int to, uint64_t place, const unsigned char *bytes, size_t size,
                       imk_error *error)
 {
@@ -178,6 +229,8 @@ imk_status imki_packed_copy(const imki_packed *packed, uint64_t most, int to, ui
         if (status == IMK_OK)
             status = put(to, begin + place, bytes, size, error);
     }
+    if (status == IMK_OK)
+        status = imki_packed_end(&part, error);
     imki_packed_close(&part);
     free(bytes);
     return status;

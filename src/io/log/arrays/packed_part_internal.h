@@ -23,7 +23,7 @@ typedef struct imki_packed {
     const char *name; /* for messages, as in "gyro.npy"; may be NULL */
     bool has_crc;
     uint32_t crc;      /* of all unpacked bytes */
-    uint64_t unpacked; /* their number, with has_crc */
+    uint64_t unpacked; /* their number, with has_crc, and with IMKI_ZLIB where it is known */
 } imki_packed;
 
 typedef struct imki_unpacking {
@@ -46,7 +46,13 @@ void imki_packed_close(imki_unpacking *part);
 imk_status imki_packed_read(imki_unpacking *part, uint64_t place, void *bytes, size_t size,
                             imk_error *error);
 
-/* Write `most` of the unpacked bytes to a file, from byte `begin` on.
+/* Read on to the end, so that the checksum is compared: that of the whole, or zlib's own.
+ * @return as imki_packed_read() */
+imk_status imki_packed_end(imki_unpacking *part, imk_error *error);
+/* Read all of it for the checksum alone. */
+imk_status imki_packed_check(const imki_packed *packed, imk_error *error);
+
+/* Write `most` of the unpacked bytes to a file, from byte `begin` on; the checksum is compared.
  * @return as imki_packed_read(), IMK_ERROR_WRITE */
 imk_status imki_packed_copy(const imki_packed *packed, uint64_t most, int to, uint64_t begin,
                             imk_error *error);

@@ -55,7 +55,7 @@ static bool take_header(const uint8_t *at, size_t size, imki_bag_header *header)
                  {"md5sum", NULL, 0, &header->digest}};
     const uint8_t *end = at + size;
     imki_log_piece name, value;
-    *header = (imki_bag_header){.op = 0};
+    *header = (imki_bag_header){.connection = IMKI_BAG_NO_CONNECTION};
     while (take_field(&at, end, &name, &value)) {
         const size_t length = (size_t)(value.end - value.begin);
         const uint8_t *bytes = (const uint8_t *)value.begin;
@@ -95,7 +95,8 @@ imk_status imki_bag_connection(imki_ros_log *log, const imki_bag_record *record,
 {
     imki_bag_header about;
     uint32_t topic;
-    if (record->size > UINT32_MAX || !take_header(record->data, (size_t)record->size, &about)) {
+    if (record->size > UINT32_MAX || !take_header(record->data, (size_t)record->size, &about) ||
+        record->header.connection > UINT32_MAX || about.type.begin == about.type.end) {
         imki_log_damage(log->reader, log->rows);
         return IMK_OK;
     }
@@ -185,8 +186,19 @@ static imk_status next_inside(imki_bag *bag, imki_ros_message *message, bool *fo
     *found = record.header.op == IMKI_BAG_MESSAGE;
     if (*found)
         give(&record, message);
+    else if (record.header.op != IMKI_BAG_CONNECTION)
+        imki_log_damage(bag->log.reader, bag->log.rows);
     return record.header.op == IMKI_BAG_CONNECTION ? imki_bag_connection(&bag->log, &record, error)
                                                    : IMK_OK;
+}
+
+/* Records that hold no messages. One of no known kind, or with what only a chunk has, was damaged,
+ * and what it held is lost. */
+static bool may_be_passed(const imki_bag_header *header)
+{
+    const bool index = header->op == IMKI_BAG_HEAD || header->op == IMKI_BAG_INDEX ||
+                       header->op == IMKI_BAG_CHUNK_INFO;
+    return index && header->compression.begin == NULL;
 }
 
 /* A record of the file. *over: there are no more. */
@@ -208,6 +220,8 @@ static imk_status next_outside(imki_bag *bag, imki_ros_message *message, bool *f
         return enter_chunk(bag, &record, error);
     const bool message_found = record.header.op == IMKI_BAG_MESSAGE;
     if (!message_found && record.header.op != IMKI_BAG_CONNECTION) {
+        if (!may_be_passed(&record.header))
+            imki_log_damage(log->reader, log->rows);
         status = imki_ros_skip(log, record.head + record.size, &whole, error);
         *over = !whole;
         return status;

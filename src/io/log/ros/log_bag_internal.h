@@ -14,8 +14,10 @@ enum {
     IMKI_BAG_CHUNK_INFO = 6,
     IMKI_BAG_CONNECTION = 7
 };
+#define IMKI_BAG_NO_CONNECTION UINT64_MAX
 
-/* The fields of the header of a record, 0 and empty where not there. */
+/* The fields of the header of a record, 0 and empty where not there; the connection is then
+ * IMKI_BAG_NO_CONNECTION. */
 typedef struct imki_bag_header {
     uint64_t op, connection, time, size;
     uint64_t index_place, connections, chunks; /* of the head of the bag */

@@ -90,8 +90,12 @@ static imk_status add_channel(imki_mcap *mcap, imki_mcap_members *members, imk_e
         imki_log_damage(mcap->log->reader, mcap->log->rows);
         return IMK_OK;
     }
-    return imki_ros_channel_add(mcap->log, id, topic, (imki_log_piece){type, type + strlen(type)},
-                                encoding_of(encoding, type), &index, error);
+    const imk_status status =
+        imki_ros_channel_add(mcap->log, id, topic, (imki_log_piece){type, type + strlen(type)},
+                             encoding_of(encoding, type), &index, error);
+    if (status == IMK_OK)
+        imki_ros_topic_form(mcap->log, index, encoding);
+    return status;
 }
 
 imk_status imki_mcap_define(imki_mcap *mcap, const imki_mcap_record *record, imk_error *error)

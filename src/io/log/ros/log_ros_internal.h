@@ -29,6 +29,7 @@ typedef struct imki_ros_topic {
     imk_log_stream stream;
     uint64_t hash; /* of the whole name, type and encoding */
     imki_ros_encoding encoding;
+    char form[24]; /* the encoding as the log calls it; "": not said */
     uint64_t seen; /* messages met in the look at the beginning */
     imki_imu first;
     int64_t time[2][2]; /* of the first two: stamp, recorded */
@@ -72,11 +73,13 @@ struct imki_ros_log {
     bool looking, held;
     uint64_t looked;
     size_t damaged_before; /* there */
-    bool by_receipt;       /* stamps are all 0: the times are those of recording */
-    bool has[2];           /* gyro, accel */
-    int64_t origin;        /* [ns] */
-    size_t rows;           /* of the present call, for the place of damage */
-    bool packed;           /* each message is compressed by zstd */
+    size_t damaged_met;    /* in the look */
+    bool cut_met;
+    bool by_receipt; /* stamps are all 0: the times are those of recording */
+    bool has[2];     /* gyro, accel */
+    int64_t origin;  /* [ns] */
+    size_t rows;     /* of the present call, for the place of damage */
+    bool packed;     /* each message is compressed by zstd */
     uint8_t *unpacked;
     void *unpacker;
 };
@@ -93,6 +96,8 @@ static inline bool imki_piece_is(imki_log_piece piece, const char *text)
 /* Note a topic, if it is not there yet. @param topic  receives its number */
 imk_status imki_ros_topic_add(imki_ros_log *log, imki_log_piece name, imki_log_piece type,
                               imki_ros_encoding encoding, uint32_t *topic, imk_error *error);
+/* State the encoding of a topic as the log calls it. */
+void imki_ros_topic_form(imki_ros_log *log, uint32_t topic, imki_log_piece form);
 /* Note a channel. One that is there already is replaced.
  * @param name,type  not terminated by a zero
  * @param topic      receives its number

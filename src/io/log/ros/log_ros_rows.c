@@ -33,9 +33,12 @@ static bool decode(imki_ros_log *log, const imki_ros_topic *of, const imki_ros_m
 static void look_at(imki_ros_log *log, imki_ros_topic *topic, const imki_ros_message *message)
 {
     imki_imu imu;
-    if (topic->encoding == IMKI_ROS_OTHER || topic->seen >= IMKI_ROS_LOOK ||
-        !decode(log, topic, message, &imu))
+    if (topic->encoding == IMKI_ROS_OTHER || topic->seen >= IMKI_ROS_LOOK)
         return;
+    if (!decode(log, topic, message, &imu)) {
+        imki_log_damage(log->reader, 0);
+        return;
+    }
     log->held = true;
     if (topic->seen == 0)
         topic->first = imu;
@@ -47,7 +50,9 @@ static void look_at(imki_ros_log *log, imki_ros_topic *topic, const imki_ros_mes
     topic->seen++;
 }
 
-/* With an index, until the first messages of the topic are known; without, as far as is looked for
+/* Damage counts where the reading begins behind it.
+ *
+ * With an index, until the first messages of the topic are known; without, as far as is looked for
  * topics. */
 static imk_status look(imki_ros_log *log, imk_error *error)
 {
@@ -57,6 +62,8 @@ static imk_status look(imki_ros_log *log, imk_error *error)
         status = log->container->next(log, &message, &found, error);
         imki_ros_topic *topic =
             status == IMK_OK && found ? imki_ros_topic_of(log, message.channel) : NULL;
+        if (status == IMK_OK && found && !topic)
+            imki_log_damage(log->reader, 0);
         if (!topic || (log->indexed && topic != &log->topics[log->topic]))
             continue;
         look_at(log, topic, &message);
@@ -64,7 +71,47 @@ static imk_status look(imki_ros_log *log, imk_error *error)
             break;
     }
     log->looking = false;
+    log->damaged_met = log->reader->damaged;
+    log->cut_met = log->reader->cut_short;
     return status == IMK_OK ? log->container->back(log, error) : status;
+}
+
+/* Is it an Imu by the end of its type, whatever its encoding: "foxglove.Imu"? */
+static bool is_called_imu(const char *type)
+{
+    const size_t length = strlen(type);
+    return length >= 3 && strcmp(type + length - 3, "Imu") == 0 &&
+           (length == 3 || strchr("/.:", type[length - 4]));
+}
+
+/* Why there is none: what is damaged, or an encoding that is not read; else as it was said. */
+static imk_status refuse_empty(const imki_ros_log *log, imk_error *error)
+{
+    const size_t damaged = log->damaged_met;
+    char found[96];
+    for (size_t i = 0; i < log->topic_count; i++) {
+        const imki_ros_topic *topic = &log->topics[i];
+        if (topic->encoding != IMKI_ROS_OTHER || !is_called_imu(topic->stream.kind))
+            continue;
+        if (topic->form[0])
+            snprintf(found, sizeof found, "the messages %.32s are in the encoding \"%s\"",
+                     topic->stream.kind, topic->form);
+        else
+            snprintf(found, sizeof found, "the messages %.32s are of another definition",
+                     topic->stream.kind);
+        return imk_error_set(error, IMK_ERROR_EMPTY, "", found,
+                             "write sensor_msgs/Imu in ros1, or sensor_msgs/msg/Imu in cdr");
+    }
+    if (damaged == 0 && !log->cut_met)
+        return IMK_ERROR_EMPTY;
+    if (damaged == 0)
+        snprintf(found, sizeof found,
+                 "the log is cut short, with no sensor_msgs/Imu before its end");
+    else
+        snprintf(found, sizeof found,
+                 "no sensor_msgs/Imu can be read, and %zu block%s or message%s damaged", damaged,
+                 damaged == 1 ? "" : "s", damaged == 1 ? " is" : "s are");
+    return imk_error_set(error, IMK_ERROR_EMPTY, "", found, "copy the file again");
 }
 
 static imk_status choose(imki_ros_log *log, imk_error *error)
@@ -83,7 +130,7 @@ static imk_status choose(imki_ros_log *log, imk_error *error)
     if (status == IMK_OK)
         status = imki_log_stream_choose(reader, "no topic of the log has messages sensor_msgs/Imu",
                                         &log->topic, error);
-    return status;
+    return status == IMK_ERROR_EMPTY ? refuse_empty(log, error) : status;
 }
 
 /* ---- columns and times ---- */

@@ -70,6 +70,11 @@ imk_status imki_ros_topic_add(imki_ros_log *log, imki_log_piece name, imki_log_p
     return IMK_OK;
 }
 
+void imki_ros_topic_form(imki_ros_log *log, uint32_t topic, imki_log_piece form)
+{
+    copy_text(form, log->topics[topic].form, sizeof log->topics[topic].form);
+}
+
 /* Index of the first channel that is not before `id`. */
 static size_t find(const imki_ros_log *log, uint32_t id)
 {

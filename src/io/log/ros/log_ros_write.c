@@ -24,16 +24,13 @@ static int place_of(const imk_log_column *column)
 static void suggest(const imki_ros_writer *writer, const imki_log_output *log, const char *path,
                     size_t size, char *text)
 {
-    const char *ending = strrchr(path, '.');
-    int used =
-        snprintf(text, size, "imukit convert FILE.csv FILE%.8s --select ", ending ? ending : "");
-    text[0] = writer->time >= 0 && (writer->has[0] || writer->has[1]) ? text[0] : '\0';
-    for (size_t i = 0; i < log->rows.column_count && text[0] && (size_t)used < size; i++) {
+    const bool any = writer->time >= 0 && (writer->has[0] || writer->has[1]);
+    bool keep[IMK_LOG_COLUMNS_MAX];
+    for (size_t i = 0; i < log->rows.column_count; i++) {
         const int place = place_of(&log->column[i]);
-        if (place == 0 || (place > 0 && writer->has[(place - 1) / 3]))
-            used += snprintf(text + used, size - (size_t)used, "%s%s",
-                             text[used - 1] == ' ' ? "" : ",", log->column[i].name);
+        keep[i] = any && (place == 0 || (place > 0 && writer->has[(place - 1) / 3]));
     }
+    imki_log_select_text(log, path, keep, size, text);
 }
 
 static imk_status refuse(const imki_ros_writer *writer, const imki_log_output *log,

@@ -195,6 +195,8 @@ imk_status imki_rosbag2_db_topics(imki_rosbag2 *bag, imk_error *error)
         if (id >= 0 && id <= UINT32_MAX)
             status = imki_ros_channel_add(&bag->log, (uint32_t)id, name, type,
                                           imki_rosbag2_encoding(type, form), &topic, error);
+        if (id >= 0 && id <= UINT32_MAX && status == IMK_OK)
+            imki_ros_topic_form(&bag->log, topic, form);
     }
     if (status == IMK_OK && result != SQLITE_DONE)
         status = refuse(&bag->db, error);

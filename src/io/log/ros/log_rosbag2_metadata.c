@@ -71,6 +71,7 @@ static imk_status take_topic(imki_rosbag2 *bag, const imk_document *document, in
         imki_ros_topic_add(&bag->log, name, type, imki_rosbag2_encoding(type, form), &topic, error);
     if (status != IMK_OK)
         return status;
+    imki_ros_topic_form(&bag->log, topic, form);
     imk_log_stream *stream = &bag->log.topics[topic].stream;
     stream->samples = (uint64_t)messages;
     if (messages > 0 && time[1] >= time[0]) {

@@ -39,9 +39,11 @@ np.savez("named.npz", data=matrix)
 np.savez("lengths.npz", **{"gyro [rad/s]": gyro, "accel [m/s^2]": accel[:15]})
 with mock.patch("zipfile.ZIP64_LIMIT", 1), mock.patch("zipfile.ZIP_FILECOUNT_LIMIT", 1):
     np.savez("zip64.npz", **{"t [s]": t, "gyro [rad/s]": gyro, "accel [m/s^2]": accel})
+np.savez("unread.npz", t=t, accel=accel, gyro=gyro.astype("f2"), title="a log")
 np.savez("records.npz", table=np.zeros(4, dtype=[("a", "f8"), ("b", "f8")]))
 
 scipy.io.savemat("plain.mat", dict(t=t, gyro=gyro, accel=accel.T, units=units))
+scipy.io.savemat("unread.mat", dict(t=t, accel=accel, wide=np.zeros((2, 2, 2)), gyro=gyro + 0j))
 scipy.io.savemat("packed.mat", dict(imu=dict(t=t[:, None], fb=accel, wb=gyro, freq=64.0),
                                     notes="a log"), do_compression=True)
 scipy.io.savemat("types.mat", dict(t=np.arange(N, dtype="u2"), gyro=(gyro * 1024).astype("i2"),
@@ -117,6 +119,9 @@ with hdf5("records.h5") as f:
     f.create_dataset("table", data=table).attrs["units"] = ["s", "rad/s", "m/s^2"]
 with hdf5("matrix.h5") as f:
     f.create_dataset("data", data=matrix, chunks=(7, 3)).attrs["columns"] = columns
+with hdf5("unread.h5") as f:
+    f["t"], f["accel"], f["title"] = t, accel, "a log"
+    f.create_dataset("gyro", data=gyro, compression="lzf")
 with hdf5("virtual.h5") as f:
     layout = h5py.VirtualLayout((N,), "f8")
     layout[:] = h5py.VirtualSource("chunked.h5", "t", (N,))
