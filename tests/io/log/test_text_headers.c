@@ -316,7 +316,7 @@ static void headers_of_one_byte_each_are_named(void **state)
     assert_int_equal(t.status, IMK_OK);
     settings.columns = "gyro_x [deg/s]";
     read_text("gyro_x [\xB0/s]\n1\n", &settings);
-    check_says(IMK_ERROR_CONFLICT, "columns");
+    assert_int_equal(t.status, IMK_OK);
     settings.columns = NULL; /* a name may be anything */
     read_text("gyro_x [deg/s],gr\xFCn\n1,2\n", &settings);
     assert_int_equal(t.status, IMK_OK);
@@ -338,6 +338,29 @@ static void headers_come_first(void **state)
     assert_int_equal(t.status, IMK_OK);
 }
 
+/* ------------------------------------------------------------------------- sensors of a table */
+
+static void sensors_may_share_what_has_no_number(void **state)
+{
+    (void)state;
+    imk_log_settings settings = imk_log_default();
+    static const char two[] =
+        "time [s],gyro1_x [rad/s],gyro2_x [rad/s],accel_x [m/s^2]\n0,1,2,3\n1,1,2,3\n";
+    read_text(two, &settings);
+    check_says(IMK_ERROR_NAME_UNKNOWN, "the log holds 2 sensors; add --topic 1 (or --topic 2)");
+    settings.topic = "2";
+    read_text(two, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.columns, 3);
+    CHECK_CLOSE(t.data[1][0], 2, 0);
+    CHECK_CLOSE(t.data[2][0], 3, 0);
+    assert_int_equal(t.column[2].quantity, IMK_QUANTITY_SPECIFIC_FORCE);
+    settings.topic = NULL; /* of the two gyros, one is the table's own */
+    read_text("time [s],gyro_x [rad/s],gyro2_x [rad/s],accel_x [m/s^2]\n0,1,2,3\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.column[2].quantity, IMK_QUANTITY_OTHER);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -352,6 +375,7 @@ int main(void)
         cmocka_unit_test(dates_in_other_words_are_named),
         cmocka_unit_test(headers_of_one_byte_each_are_named),
         cmocka_unit_test(headers_come_first),
+        cmocka_unit_test(sensors_may_share_what_has_no_number),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

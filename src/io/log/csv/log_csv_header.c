@@ -270,9 +270,10 @@ static imk_status replace_names(const char *columns, bool has_header, imki_csv_h
         imki_log_unit_split(&own, &own_unit);
         if (own_unit.begin == own_unit.end)
             own_unit = imki_log_unit_of_name(own);
-        const imk_status status = has_header && !skip
-                                      ? imki_log_units_agree("columns", own, unit, own_unit, error)
-                                      : IMK_OK;
+        /* A unit that is not UTF-8 is not known, and yields to the one that is stated. */
+        const bool known = has_header && !skip && imki_csv_is_utf8(own_unit);
+        const imk_status status =
+            known ? imki_log_units_agree("columns", own, unit, own_unit, error) : IMK_OK;
         if (status != IMK_OK)
             return status;
         imki_log_piece_copy(first, sizeof first, name);

@@ -22,13 +22,26 @@ static bool has_several(const imki_log_cell *cells, size_t count)
     return false;
 }
 
-/* Is there a reading whose sensor has no name of its own? */
+/* Is there a reading whose sensor has no name of its own, and is not one that all may share: a
+ * single accelerometer beside gyro1 and gyro2? */
 static bool has_nameless(const imki_log_cell *cells, size_t count)
 {
-    for (size_t i = 0; i < count; i++)
-        if (is_sensor(&cells[i]) && !cells[i].name.group[0])
-            return true;
-    return false;
+    bool any = false, shared = true, several = false;
+    for (size_t i = 0; i < count; i++) {
+        if (!is_sensor(&cells[i]))
+            continue;
+        const bool nameless = !cells[i].name.group[0];
+        any = any || nameless;
+        for (size_t k = 0; k < count; k++) {
+            if (!is_sensor(&cells[k]) || !cells[k].name.group[0] ||
+                cells[k].name.kind->quantity != cells[i].name.kind->quantity)
+                continue;
+            shared = shared && !nameless;
+            several = several || (cells[i].name.kind->quantity != IMK_QUANTITY_MAGNETIC &&
+                                  strcmp(cells[k].name.group, cells[i].name.group) != 0);
+        }
+    }
+    return any && !(shared && several);
 }
 
 static imk_status add_groups(imk_log_reader *reader, const imki_log_cell *cells, size_t count,
@@ -37,7 +50,7 @@ static imk_status add_groups(imk_log_reader *reader, const imki_log_cell *cells,
     for (size_t i = 0; i < count; i++) {
         imk_log_stream stream = {.instance = -1, .begin = (double)NAN, .end = (double)NAN};
         bool known = false;
-        if (!is_sensor(&cells[i]))
+        if (!is_sensor(&cells[i]) || !cells[i].name.group[0])
             continue;
         for (size_t k = 0; k < i; k++)
             known = known ||
@@ -78,7 +91,8 @@ imk_status imki_csv_choose_sensor(imk_log_reader *reader, imki_csv_header *heade
     if (status != IMK_OK)
         return status;
     for (size_t i = 0; i < header->count; i++)
-        if (is_sensor(&cells[i]) && strcmp(cells[i].name.group, reader->streams[index].name) != 0)
+        if (is_sensor(&cells[i]) && cells[i].name.group[0] &&
+            strcmp(cells[i].name.group, reader->streams[index].name) != 0)
             header->cell[i] = (imki_log_piece){skip, skip + 1};
     return IMK_OK;
 }
