@@ -415,10 +415,7 @@ imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
     if (status != IMK_OK)
         return status;
     imki_log_cells_name(settings->map ? mapped : header, cell_count, cells);
-    if (!settings->map)
-        status = imki_log_time_parts_refuse(header, cells, cell_count, error);
-    if (status == IMK_OK)
-        status = resolve_doubles(cells, cell_count, error);
+    status = resolve_doubles(cells, cell_count, error);
     for (size_t i = 0; i < cell_count && status == IMK_OK; i++)
         status = add_cell(layout, i, &cells[i], settings, error);
     if (status == IMK_OK)

@@ -42,9 +42,10 @@ typedef struct imki_log_time_parts {
 /* Has the header such two, and no column of the whole time by an exact name? */
 bool imki_log_time_parts_find(const imki_log_piece *header, size_t count,
                               imki_log_time_parts *parts);
-/* Refuse to take the seconds alone for the time. @return IMK_ERROR_COLUMN */
-imk_status imki_log_time_parts_refuse(const imki_log_piece *header, const imki_log_cell *cells,
-                                      size_t count, imk_error *error);
+/* Refuse to take the seconds alone for the time. @param map  names the columns, or NULL
+ * @return IMK_ERROR_COLUMN */
+imk_status imki_log_time_parts_refuse(const imki_log_piece *header, size_t count, const char *map,
+                                      imk_error *error);
 
 /* The header that settings.map makes of one: columns that it does not name are "-".
  * @param text  holds the new names */

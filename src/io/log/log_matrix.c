@@ -6,6 +6,7 @@
 
 #include "io/file/system_error_internal.h"
 #include "io/file/text_file_internal.h"
+#include "log_columns_internal.h"
 #include "log_reader_internal.h"
 
 #include <errno.h>
@@ -129,6 +130,8 @@ imk_status imki_log_matrix_open(imk_log_reader *reader, uint64_t columns, uint64
     if (columns == 0) /* more names than fit are refused all the same */
         columns = count < IMK_LOG_COLUMNS_MAX ? count : IMK_LOG_COLUMNS_MAX;
     status = check_count(reader, count, columns, error);
+    if (status == IMK_OK)
+        status = imki_log_time_parts_refuse(cells, count, settings->map, error);
     if (status == IMK_OK)
         status = imki_log_layout_make(cells, count, settings, &reader->layout, error);
     return status == IMK_OK ? look_at_rows(reader, matrix, error) : status;

@@ -81,7 +81,8 @@ imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
 
 /* log_counts.c: do the settings say what counts of a quantity are? */
 bool imki_log_counted(const imk_log_settings *settings, imk_quantity quantity);
-/* Refuse counts that the device cannot give: of the last `rows` rows, which reader->rows includes. */
+/* Refuse counts that the device cannot give: of the last `rows` rows, which are among
+ * reader->rows. */
 imk_status imki_log_counts_check(const imk_log_reader *reader, size_t rows, double *const *columns,
                                  imk_error *error);
 /* Make a column of counts one of a physical unit, where the settings say what a count is: its unit,

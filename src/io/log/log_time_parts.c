@@ -86,15 +86,21 @@ bool imki_log_time_parts_find(const imki_log_piece *header, size_t count,
     return false;
 }
 
-imk_status imki_log_time_parts_refuse(const imki_log_piece *header, const imki_log_cell *cells,
-                                      size_t count, imk_error *error)
+imk_status imki_log_time_parts_refuse(const imki_log_piece *header, size_t count, const char *map,
+                                      imk_error *error)
 {
     imki_log_time_parts parts;
     char found[160], first[40], second[40];
-    if (!imki_log_time_parts_find(header, count, &parts) || !cells[parts.whole].name.kind)
+    if (map || !imki_log_time_parts_find(header, count, &parts))
         return IMK_OK;
-    imki_log_piece_copy(first, sizeof first, cells[parts.whole].text);
-    imki_log_piece_copy(second, sizeof second, cells[parts.rest].text);
+    imki_log_piece name = header[parts.whole], rest = header[parts.rest], unit;
+    imki_log_unit_split(&name, &unit);
+    imki_log_unit_split(&rest, &unit);
+    imki_log_piece_copy(first, sizeof first, name);
+    imki_log_piece_copy(second, sizeof second, rest);
+    const imki_log_name seconds = imki_log_name_of(first);
+    if (!seconds.kind || seconds.kind->quantity != IMK_QUANTITY_TIME)
+        return IMK_OK;
     snprintf(found, sizeof found, "%s is only the seconds of the time, and %s the rest of it",
              first, second);
     return imk_error_set(error, IMK_ERROR_COLUMN, "time", found,

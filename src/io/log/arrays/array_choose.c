@@ -298,7 +298,9 @@ static imk_status make_layout(imk_log_reader *reader, size_t count, const imki_l
             return refuse_count(given, count, head, error);
         head = named;
     }
-    return imki_log_layout_make(head, count, settings, &reader->layout, error);
+    const imk_status status = imki_log_time_parts_refuse(head, count, settings->map, error);
+    return status == IMK_OK ? imki_log_layout_make(head, count, settings, &reader->layout, error)
+                            : status;
 }
 
 /* The arrays that belong to `first`, as columns. */

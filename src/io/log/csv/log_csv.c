@@ -226,6 +226,9 @@ static imk_status make_layout(imk_log_reader *reader, imki_csv *csv, imk_error *
     find_parts(reader, csv);
     imk_status status = imki_csv_encoding_check(header, error);
     if (status == IMK_OK)
+        status =
+            imki_log_time_parts_refuse(header->cell, header->count, reader->settings.map, error);
+    if (status == IMK_OK)
         status = imki_csv_choose_sensor(reader, header, error);
     if (status == IMK_OK)
         status =
