@@ -45,7 +45,7 @@ set_property(SOURCE ${seldom_run_sources} APPEND PROPERTY COMPILE_OPTIONS ${imuk
 if(IMUKIT_SANITIZE AND NOT IMUKIT_FUZZ)
   set(much_run_sources ${core_sources})
   list(FILTER much_run_sources INCLUDE REGEX
-       "/(drift_propagate|stockham|smooth_transform|bluestein|roots_of_unity|elementary|cholesky|normal_distribution|sort|calibration_normal|calibration_rows|calibration_regressors|reference_offset|thermal_noise|thermal_blocks|spectral_fit|spectral_shape|spectral_lines|fast_shape|noise_strength|level_noise|level_jumps|screen_trend|output_filter|arma|linear_dynamics|resonance|allan_variance|allan_covariance|allan_covariance_terms)\\.c$")
+       "/(drift_propagate|stockham|smooth_transform|bluestein|roots_of_unity|elementary|cholesky|normal_distribution|sort|calibration_normal|calibration_rows|calibration_regressors|reference_offset|thermal_noise|thermal_blocks|spectral_fit|spectral_shape|spectral_lines|fast_shape|noise_strength|level_noise|level_jumps|screen_trend|output_filter|arma|linear_dynamics|resonance|sinusoids|screen_finish|screener_serial|screener_cycles|coarse_ranges|log_coherence|filtered_white|identify_lines|allan_variance|allan_covariance|allan_covariance_terms)\\.c$")
   set_property(SOURCE ${much_run_sources} APPEND PROPERTY COMPILE_OPTIONS -O3)
 endif()
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What identify says first: one sentence that is true of the log, and little after it. */
+/* What identify says first: one sentence that is true of the log, and little after it. Where
+ * mistakes of memory are looked for, logs that differ in words only are left out. */
 #include "check.h"
 
 #include "run_command.h"
@@ -81,6 +82,10 @@ static void test_step(void **state)
     check_contains(err, "warning: the slow terms of gyro_y include jumps of the level\n",
                    "warning");
     assert_null(strstr(out, "was touched"));
+    if (check_quick()) {
+        sweep();
+        return;
+    }
     identify_log("--verbose");
     check_contains(out, "was touched", "whole message");
     assert_int_equal(run("$I identify log.csv --strict"), 1);
@@ -109,6 +114,10 @@ static void test_vibration(void **state)
              "15");
     identify_log("--verbose");
     check_contains(out, "vibrates (a fan, a motor, the building), at 2.", "tones");
+    if (check_quick()) {
+        sweep();
+        return;
+    }
     identify_log("");
     check_contains(out, "Vibration of what the sensor stands on, in gyro_x and gyro_y.", "list");
     assert_null(strstr(out, "averages"));
@@ -130,6 +139,10 @@ static void test_averages(void **state)
                      0);
     identify_log("--verbose");
     check_contains(out, "or the logger wrote averages of several samples", out);
+    if (check_quick()) {
+        sweep();
+        return;
+    }
     identify_log("");
     check_contains(out, "stands on, or averages of the logger: all channels.", out);
     sweep();
@@ -176,6 +189,10 @@ static void test_standing_still(void **state)
     make_log("if (t > 300 && t < 390) $4 = z; else z = $4");
     identify_log("");
     check_first("Usable with care: gyro_z stands still for a part of the log");
+    if (check_quick()) {
+        sweep();
+        return;
+    }
     make_log("if (t > 300 && t < 390) { $3 = y; $4 = z } else { y = $3; z = $4 }");
     identify_log("");
     check_first("Usable with care: gyro_y and gyro_z stand still for a part of the log");
@@ -192,6 +209,10 @@ static void test_axis_of_another_unit(void **state)
     identify_log("");
     check_first("Usable with care: the white noise of accel_x is 9.");
     check_contains(out, "times smaller than that of the other two axes, as if it were in g.", out);
+    if (check_quick()) {
+        sweep();
+        return;
+    }
     make_log("$3 *= 3.141592653589793 / 180");
     identify_log("");
     check_contains(out, "times smaller than that of the other two axes, as if it were in rad/s.",
@@ -213,6 +234,10 @@ static void test_numbers_of_no_gyro(void **state)
     make_log("for (c = 2; c < 5; c++) $c *= 57.3");
     identify_log("");
     check_first("Usable with care: the numbers of the gyros are no gyro's at rest: a wrong unit");
+    if (check_quick()) {
+        sweep();
+        return;
+    }
     make_log("$3 += 40");
     identify_log("");
     check_first("Usable with care: the numbers of gyro_y are no gyro's at rest");
@@ -231,6 +256,10 @@ static void test_what_cannot_be_seen(void **state)
     check_contains(out, limits, "limits");
     identify_log("--json");
     check_contains(out, "\"not_testable\"", "code");
+    if (check_quick()) {
+        sweep();
+        return;
+    }
     assert_int_equal(run("cut -d, -f2-5 log.csv > part.csv && $I identify part.csv --rate 20Hz"),
                      0);
     check_contains(out,
@@ -325,6 +354,10 @@ static void test_one_or_several(void **state)
     make_log("if (NR % 3) $4 *= 0.75");
     identify_log("");
     check_contains(out, "gyro_z looks interpolated from a slower sensor", out);
+    if (check_quick()) {
+        sweep();
+        return;
+    }
     make_log("if (NR % 3) { $4 *= 0.75; $5 *= 0.75 }");
     identify_log("");
     check_contains(out, "gyro_z and accel_x look interpolated from a slower sensor", out);
