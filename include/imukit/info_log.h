@@ -62,6 +62,11 @@ typedef struct imk_info_log {
     bool whole;               /**< that was the whole record */
     uint64_t rows;            /**< of the record */
     imk_info_basis rows_from;
+    /** Whether the units of time and sensors, and the rate, are known. Without that the motion is
+     *  not, and readings are the numbers of the log (imk_log_settings.as_written). */
+    bool stated;
+    bool timed; /**< whether `interval`, `duration` and times are in seconds; false: they are in the
+                     numbers of the time column, or 0 and NaN where there is none */
     double first_time, last_time; /**< [s]; NaN: there is no time column, or not known */
     double time_origin;           /**< see imk_log_findings */
     double duration;              /**< [s] */

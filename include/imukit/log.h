@@ -88,11 +88,15 @@ typedef struct imk_log_settings {
     const char *axes; /**< axes of the log, "right-forward-up" …, mapped to forward-right-down;
                          NULL: no mapping */
     bool any_columns; /**< also accept a table without time and sensors; default false */
-    bool reopened;    /**< the log will be opened again. An input that cannot be rewound, such as a
-                         pipe, is then first copied to a temporary file in TMPDIR. That file is read
-                         now and at later openings, up to and including the first without `reopened`;
-                         default false */
-    size_t memory;    /**< largest memory for a whole log [bytes]; 0: half of imk_memory_limit() */
+    /** For a first look: a column whose unit nobody states is read as it is written, with an empty
+     *  unit of scale 1, also the time; a log without times needs no rate, and a CSV without header
+     *  has "column 1", "column 2", … Default false: all that is missing is refused. */
+    bool as_written;
+    bool reopened; /**< the log will be opened again. An input that cannot be rewound, such as a
+                      pipe, is then first copied to a temporary file in TMPDIR. That file is read
+                      now and at later openings, up to and including the first without `reopened`;
+                      default false */
+    size_t memory; /**< largest memory for a whole log [bytes]; 0: half of imk_memory_limit() */
 } imk_log_settings;
 
 /** Everything from the header of the file. */

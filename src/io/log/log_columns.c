@@ -129,8 +129,10 @@ static imk_status find_unit(imki_log_cell *cell, const imk_log_settings *setting
             text = "count";
         cell->column.unit_origin = IMK_UNIT_OF_SETTINGS;
         cell->lacks_unit = !text;
-        if (!text)
+        if (!text) {
+            cell->column.unit = (imk_unit){.scale = 1.0};
             return IMK_OK;
+        }
     }
     if (kind->quantity == IMK_QUANTITY_SPECIFIC_FORCE && unit.end - unit.begin == 1 &&
         *unit.begin == 'G')

@@ -211,7 +211,7 @@ imk_status imki_log_missing_check(const imki_log_cell *cells, imki_log_layout_re
                                   const imk_log_settings *settings, imk_error *error)
 {
     note_missing(cells, layout, settings);
-    return layout->missing.count > 0 || layout->missing.rate
+    return !settings->as_written && (layout->missing.count > 0 || layout->missing.rate)
                ? imki_log_missing_refuse(layout, NULL, error)
                : IMK_OK;
 }

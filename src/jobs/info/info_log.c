@@ -93,6 +93,20 @@ static void find_columns(look *l)
     }
 }
 
+/* Is the unit known of the times and of each sensor? */
+static void find_stated(look *l)
+{
+    imk_info_log *info = l->info;
+    info->timed =
+        l->time >= 0 ? info->channel[l->time].column.unit.text[0] != '\0' : l->interval > 0;
+    info->stated = info->timed;
+    for (size_t c = 0; c < info->channel_count; c++) {
+        const imk_log_column *column = &info->channel[c].column;
+        info->stated = info->stated &&
+                       (column->quantity == IMK_QUANTITY_OTHER || column->unit.text[0] != '\0');
+    }
+}
+
 /* After the first block: how many rows are a second. */
 static void find_window(look *l)
 {
@@ -243,7 +257,10 @@ static imk_status run(look *l, imk_error *error)
     info->jitter = l->steps > 0 ? sqrt(l->jitter_squares / l->steps) : 0;
     estimate_rows(l);
     imki_info_rows_end(&l->rows, l->scratch);
-    imki_info_motion(&l->rows, l->rests, l->scratch);
+    find_stated(l);
+    info->resting = (double)NAN;
+    if (info->stated)
+        imki_info_motion(&l->rows, l->rests, l->scratch);
     return status;
 }
 

@@ -102,21 +102,23 @@ static void show_faults(const imk_info_log *info, imk_table *table)
 static bool contradicts(const imk_info_log *info)
 {
     const double due = (double)info->rows * info->interval;
-    return !info->whole && info->duration_from == IMK_INFO_ENDS && info->interval > 0 &&
-           !(fabs(info->duration - due) < 0.05 * due);
+    return info->timed && !info->whole && info->duration_from == IMK_INFO_ENDS &&
+           info->interval > 0 && !(fabs(info->duration - due) < 0.05 * due);
 }
 
-static void show_times(const imk_info_log *info, imk_result *result)
+/* Times in no known unit: as the log has them. */
+static void show_plain_times(const imk_info_log *info, imk_table *table)
 {
-    imk_table *table = imk_result_table(result, 0);
-    const char *about = info->rows_from == IMK_INFO_SIZE ? "about " : "";
-    imk_table_row(table, "figure\tvalue");
-    if (info->whole)
-        imk_table_row(table, "rows\t%llu, all read", (unsigned long long)info->rows);
-    else
-        imk_table_row(table, "rows\t%s%llu, %s (%zu read, in %zu place%s)", about,
-                      (unsigned long long)info->rows, basis_words[info->rows_from], info->rows_read,
-                      info->places, info->places == 1 ? "" : "s");
+    if (!isfinite(info->first_time))
+        return;
+    imk_table_row(table, "time\tfrom %.9g to %.9g, in a unit that is not stated",
+                  info->time_origin + info->first_time, info->time_origin + info->last_time);
+    if (info->interval > 0)
+        imk_table_row(table, "step\t%.7g, the median of the time", info->interval);
+}
+
+static void show_seconds(const imk_info_log *info, imk_table *table)
+{
     if (info->duration < 0)
         imk_table_row(table, "duration\tnot known: the last time is before the first");
     else
@@ -136,6 +138,23 @@ static void show_times(const imk_info_log *info, imk_result *result)
         else
             imk_table_row(table, "jitter\tnone");
     }
+}
+
+static void show_times(const imk_info_log *info, imk_result *result)
+{
+    imk_table *table = imk_result_table(result, 0);
+    const char *about = info->rows_from == IMK_INFO_SIZE ? "about " : "";
+    imk_table_row(table, "figure\tvalue");
+    if (info->whole)
+        imk_table_row(table, "rows\t%llu, all read", (unsigned long long)info->rows);
+    else
+        imk_table_row(table, "rows\t%s%llu, %s (%zu read, in %zu place%s)", about,
+                      (unsigned long long)info->rows, basis_words[info->rows_from], info->rows_read,
+                      info->places, info->places == 1 ? "" : "s");
+    if (info->timed)
+        show_seconds(info, table);
+    else
+        show_plain_times(info, table);
     show_faults(info, table);
     imk_result_gap(result);
     if (contradicts(info))
@@ -148,17 +167,19 @@ static void show_times(const imk_info_log *info, imk_result *result)
 
 static void time_data(const imk_info_log *info, imk_result *result)
 {
+    const double seconds = info->timed ? 1 : (double)NAN;
     imk_result_count(result, "rows", (long long)info->rows);
     imk_result_text(result, "rows_from", basis_keys[info->rows_from]);
     imk_result_count(result, "rows_read", (long long)info->rows_read);
     imk_result_flag(result, "whole", info->whole);
-    imk_result_quantity(result, "duration", info->duration, "s");
+    imk_result_quantity(result, "duration", seconds * info->duration, "s");
     imk_result_text(result, "duration_from", basis_keys[info->duration_from]);
-    imk_result_quantity(result, "first_time", info->first_time, "s");
-    imk_result_quantity(result, "last_time", info->last_time, "s");
-    imk_result_quantity(result, "time_origin", info->time_origin, "s");
-    imk_result_quantity(result, "interval", info->interval > 0 ? info->interval : (double)NAN, "s");
-    imk_result_quantity(result, "jitter", info->jitter, "s");
+    imk_result_quantity(result, "first_time", seconds * info->first_time, "s");
+    imk_result_quantity(result, "last_time", seconds * info->last_time, "s");
+    imk_result_quantity(result, "time_origin", seconds * info->time_origin, "s");
+    imk_result_quantity(result, "interval",
+                        seconds * (info->interval > 0 ? info->interval : (double)NAN), "s");
+    imk_result_quantity(result, "jitter", seconds * info->jitter, "s");
     imk_result_count(result, "gaps", (long long)info->gaps);
     imk_result_count(result, "missing", (long long)info->missing);
     imk_result_count(result, "repeats", (long long)info->repeats);
@@ -185,7 +206,8 @@ static const char *unit_of(const imk_info_channel *c)
 static void show_channels(const imk_info_log *info, imk_result *result)
 {
     imk_table *table = imk_result_table(result, 0xf8);
-    imk_table_row(table, "column\tunit\tby\tmean\tscatter in 1 s\tlowest\thighest\tstep\tclipped");
+    imk_table_row(table, "column\tunit\tby\tmean\tscatter%s\tlowest\thighest\tstep\tclipped",
+                  info->timed ? " in 1 s" : "");
     for (size_t i = 0; i < info->channel_count; i++) {
         const imk_info_channel *c = &info->channel[i];
         if (c->column.quantity == IMK_QUANTITY_TIME)
@@ -253,15 +275,40 @@ static bool is_counted(const imk_info_log *info)
 imk_info_next imk_info_log_next(const imk_info_log *info)
 {
     const bool times = info->duration > 0 && 100 * info->reversals < info->rows_read;
-    if (is_counted(info) || !times)
+    if (!info->stated || is_counted(info) || !times)
         return IMK_INFO_NEXT_NONE;
     return info->motion == IMK_INFO_REST    ? IMK_INFO_NEXT_IDENTIFY
            : info->motion == IMK_INFO_POSES ? IMK_INFO_NEXT_CALIBRATE
                                             : IMK_INFO_NEXT_NONE;
 }
 
+/* What the numbers of an accelerometer without a unit say. */
+static void show_unstated(const imk_info_log *info, imk_result *result)
+{
+    double square = 0;
+    int axes = 0;
+    for (size_t i = 0; i < info->channel_count; i++) {
+        const imk_info_channel *c = &info->channel[i];
+        if (c->column.quantity == IMK_QUANTITY_SPECIFIC_FORCE && !c->column.increment &&
+            c->column.axis >= 0 && c->column.axis < 3 && c->column.unit.text[0] == '\0') {
+            square += c->mean * c->mean;
+            axes++;
+        }
+    }
+    imk_result_line(result, "Whether the sensor rests is not known without the units.");
+    if (axes == 3 && isfinite(square))
+        imk_result_line(result,
+                        "The mean of the accelerometers has the length %.4g. At rest it is 9.81 in "
+                        "m/s^2, 1 in g, 1000 in mg, and another number in counts.",
+                        sqrt(square));
+}
+
 static void show_motion(const imk_info_log *info, imk_result *result)
 {
+    if (!info->stated) {
+        show_unstated(info, result);
+        return;
+    }
     const char *where = info->whole ? "" : " in the places read";
     switch (info->motion) {
     case IMK_INFO_REST:
@@ -302,6 +349,7 @@ static void show_data(const imk_info_log *info, const imk_info_file *file, const
     imk_result_end(result);
     if (imki_begin_object(result, "record", info != NULL) && info) {
         imk_result_text(result, "topic", chosen[0] ? chosen : NULL);
+        imk_result_flag(result, "stated", info->stated);
         time_data(info, result);
         imk_result_text(result, "motion", motion_keys[info->motion]);
         imk_result_number(result, "resting", info->resting);

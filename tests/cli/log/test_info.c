@@ -66,6 +66,43 @@ static void test_suggestions(void **state)
     assert_null(strstr(out, "Next:"));
 }
 
+/* What is missing is told, and the rest is shown in the numbers of the log. */
+static void test_logs_that_lack_something(void **state)
+{
+    (void)state;
+    assert_int_equal(run("sed '1s/ [[][^]]*]//g' rest.csv >bare.csv"), 0);
+    assert_int_equal(run("$I info bare.csv"), 1);
+    check_contains(out, "time    from 0 to 119.99, in a unit that is not stated\n", "time");
+    check_contains(out, "step    0.01, the median of the time\n", "step");
+    check_contains(out, "has the length 9.8", "force");
+    assert_null(strstr(out, "Next:"));
+    assert_null(strstr(out, "Hz"));
+    check_contains(err, "add --time-unit UNIT --gyro-unit UNIT --accel-unit UNIT", "options");
+    assert_int_equal(run("$I info bare.csv --json"), 1);
+    json_error_t error;
+    json_t *root = json_loads(out, 0, &error), *record = record_of(root);
+    assert_true(json_is_false(json_object_get(record, "stated")));
+    assert_true(json_is_null(json_object_get(json_object_get(record, "duration"), "value")));
+    assert_string_equal(json_string_value(json_object_get(record, "motion")), "unknown");
+    json_t *gyro = json_array_get(json_object_get(record, "columns"), 1);
+    assert_true(json_is_null(json_object_get(gyro, "unit")));
+    json_decref(root);
+    /* Times are known, units are not. */
+    assert_int_equal(run("$I info bare.csv --time-unit s"), 1);
+    check_contains(out, "rate      100 Hz, by the median step of the time\n", "rate");
+    /* Neither names nor times. */
+    assert_int_equal(run("sed 1d rest.csv >numbers.csv"), 0);
+    assert_int_equal(run("$I info numbers.csv"), 1);
+    check_contains(out, "column 7", "columns");
+    check_contains(err, "no header", "header");
+    assert_int_equal(run("cut -d, -f2- rest.csv >timeless.csv"), 0);
+    assert_int_equal(run("$I info timeless.csv"), 1);
+    assert_null(strstr(out, "rate  "));
+    check_contains(err, "--rate RATE", "rate");
+    /* No other verb reads such numbers. */
+    assert_int_equal(run("$I allan bare.csv"), 1);
+}
+
 static void test_a_log_that_moves(void **state)
 {
     (void)state;
@@ -109,15 +146,19 @@ static void test_refusals(void **state)
     check_contains(err, "leave --topic and --instance out", "topic");
     assert_int_equal(run("$I info rest.csv --format nonesuch"), 1);
     check_contains(err, "no format is called \"nonesuch\"", "format");
-    /* rest, model, no unit, the drive and its log, long.npy and its names, empty */
-    assert_int_equal(sweep(), 8);
+    /* rest, model, no unit, bare, numbers, timeless, the drive and its log, long.npy and its names,
+     * empty */
+    assert_int_equal(sweep(), 11);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_log_at_rest),    cmocka_unit_test(test_suggestions),
-        cmocka_unit_test(test_a_log_that_moves), cmocka_unit_test(test_a_long_log),
+        cmocka_unit_test(test_a_log_at_rest),
+        cmocka_unit_test(test_suggestions),
+        cmocka_unit_test(test_logs_that_lack_something),
+        cmocka_unit_test(test_a_log_that_moves),
+        cmocka_unit_test(test_a_long_log),
         cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -290,6 +290,17 @@ static imk_status replace_names(const char *columns, bool has_header, imki_csv_h
     return IMK_OK;
 }
 
+/* "column 1", "column 2": for a look at a table without header. */
+static void number_columns(imki_csv_header *header)
+{
+    for (size_t i = 0; i < header->count; i++) {
+        snprintf(header->text[i], sizeof header->text[i], "column %zu", i + 1);
+        header->cell[i] =
+            (imki_log_piece){header->text[i], header->text[i] + strlen(header->text[i])};
+    }
+    header->replaced = true;
+}
+
 /* A line of units below that of names: "s,deg/s,deg/s". Words for no unit may stand among them. */
 static bool is_unit_row(const imki_csv_header *header, const imki_log_piece *cells, size_t count)
 {
@@ -400,7 +411,9 @@ static imk_status name_row(imk_log_reader *reader, imki_log_piece line,
         return replace_names(dialect->columns, false, header, error);
     if (settings->columns)
         return replace_names(settings->columns, header->is_comment, header, error);
-    if (!header->is_comment)
+    if (!header->is_comment && settings->as_written)
+        number_columns(header);
+    else if (!header->is_comment)
         return refuse_headless(header->count, error);
     apply_dialect(header);
     return IMK_OK;
