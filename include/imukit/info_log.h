@@ -72,7 +72,10 @@ typedef struct imk_info_log {
     double duration;              /**< [s] */
     imk_info_basis duration_from;
     double interval; /**< median time step, or 1/rate [s]; 0: not known */
-    double jitter;   /**< rms deviation of time steps from it [s] */
+    /** More than a tenth of the stamps repeat the one before: `interval` is that of the rows read
+     *  on average, and `jitter` says nothing. */
+    bool shared_stamps;
+    double jitter; /**< rms deviation of time steps from it [s] */
     /** Counts among the rows read: steps that leave samples out, samples left out there, time steps
      *  of 0 and below 0, rows with a value that is no finite number, rows that cannot be read. */
     size_t gaps, missing, repeats, reversals, not_finite, damaged;

@@ -96,10 +96,11 @@ static const struct message {
     {"missing",
      "{0} of {1} samples are missing, in {2} gap{2s}, the longest of {3g} s; the gaps stay empty"},
     /* record_stamps.c, stamp_rates.c */
-    {"stamps:coarse", "one stamp of the time column is that of {0.3g} rows on average: the rows "
-                      "are counted, and the rate of the long run is {1.7g} Hz; a loss of a few "
-                      "rows within one stamp cannot be seen, nor whether these are rows of several "
-                      "sensors"},
+    {"stamps:coarse_stamps",
+     "one stamp of the time column is that of {0.3g} rows on average: the rows "
+     "are counted, and the rate of the long run is {1.7g} Hz; a loss of a few "
+     "rows within one stamp cannot be seen, nor whether these are rows of several "
+     "sensors"},
     {"stamps:bunched", "the rows come in bunches of {0.3g} on average, stamped when they arrived: "
                        "they are counted, and the rate of the long run is {1.7g} Hz; if a bunch "
                        "is not of one sensor, choose its columns with --columns"},

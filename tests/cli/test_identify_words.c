@@ -383,6 +383,32 @@ static void test_unit_of_the_header(void **state)
     sweep();
 }
 
+/* Stamps that several rows share are no steps of the output. */
+static void test_shared_stamps(void **state)
+{
+    (void)state;
+    make_log("$1 = int(t / 0.1) / 10");
+    identify_log("");
+    check_contains(out, "\nOne stamp for several rows, which are counted.\n", "brief");
+    assert_null(strstr(out, "output step"));
+    assert_int_equal(run("$I info log.csv"), 0);
+    check_contains(out, "rate      20.00", "rate");
+    check_contains(out, "Hz, by rows and time, as rows share their stamps\n", "origin");
+    assert_null(strstr(out, "jitter"));
+    sweep();
+}
+
+/* Codes for lost rows, the same in all columns, make no column one that is computed. */
+static void test_codes_in_all_columns(void **state)
+{
+    (void)state;
+    make_log("if (NR % 500 == 0) for (i = 2; i < 8; i++) $i = -9999");
+    identify_log("--verbose");
+    check_contains(out, "as a logger writes it for a row that was lost; left out", "codes");
+    assert_null(strstr(out, "computed from the other"));
+    sweep();
+}
+
 /* What is suggested next succeeds: white noise alone says nothing of a grade. */
 static void next_lines_succeed(void **state)
 {
@@ -417,6 +443,8 @@ int main(void)
                                        cmocka_unit_test(test_averages),
                                        cmocka_unit_test(test_unit_of_the_header),
                                        cmocka_unit_test(test_one_or_several),
+                                       cmocka_unit_test(test_shared_stamps),
+                                       cmocka_unit_test(test_codes_in_all_columns),
                                        cmocka_unit_test(test_lines_everywhere)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

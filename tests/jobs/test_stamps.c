@@ -442,16 +442,21 @@ static void test_every_row_has_its_place(void **context)
 {
     (void)context;
     static const kind kinds[] = {
-        {"stamps:coarse", {{group, 2}}, 0, 0, 0, 0},
-        {"stamps:coarse", {{group, 3}}, 0, 0, 0, 0},
-        {"stamps:coarse", {{round_down, 1}}, 0, 0, 0, 0},
-        {"stamps:coarse", {{round_down, 1}}, 0, 0, 99.7, 0},
-        {"stamps:coarse", {{round_down, 1}, {offset, 1.7e9}}, 0, 0, 0, 0},
-        {"stamps:coarse", {{round_times, 1e-3}}, 0, 0, 2500, 0},
-        {"stamps:coarse", {{group, 2}, {lose_blocks, 3}}, 1, 0.02, 0, 0},
-        {"stamps:coarse", {{group, 10}, {lose_blocks, 3}, {lack_values, 0.01}}, 10, 0.02, 0, 0},
-        {"stamps:coarse", {{round_down, 1}, {lose_blocks, 2}}, 100, 0.02, 0, 0},
-        {"stamps:coarse", {{group, 2}, {lose_rows, 0.02}}, 2, 0.02, 0, 0},
+        {"stamps:coarse_stamps", {{group, 2}}, 0, 0, 0, 0},
+        {"stamps:coarse_stamps", {{group, 3}}, 0, 0, 0, 0},
+        {"stamps:coarse_stamps", {{round_down, 1}}, 0, 0, 0, 0},
+        {"stamps:coarse_stamps", {{round_down, 1}}, 0, 0, 99.7, 0},
+        {"stamps:coarse_stamps", {{round_down, 1}, {offset, 1.7e9}}, 0, 0, 0, 0},
+        {"stamps:coarse_stamps", {{round_times, 1e-3}}, 0, 0, 2500, 0},
+        {"stamps:coarse_stamps", {{group, 2}, {lose_blocks, 3}}, 1, 0.02, 0, 0},
+        {"stamps:coarse_stamps",
+         {{group, 10}, {lose_blocks, 3}, {lack_values, 0.01}},
+         10,
+         0.02,
+         0,
+         0},
+        {"stamps:coarse_stamps", {{round_down, 1}, {lose_blocks, 2}}, 100, 0.02, 0, 0},
+        {"stamps:coarse_stamps", {{group, 2}, {lose_rows, 0.02}}, 2, 0.02, 0, 0},
         {"stamps:bunched", {{bunch, 4}}, 0, 0, 0, 0},
         {"stamps:bunched", {{bunch, 20}}, 0, 0, 0, 0},
         {"stamps:bunched", {{bunch, 8}, {lose_blocks, 2}}, 8, 0.02, 0, 0},
@@ -877,7 +882,7 @@ static void test_long_record(void **context)
     assert_int_equal(found->record.missing, GAP);
     CHECK_RELATIVE(found->record.dt, 0.01, 1e-6);
     CHECK_RELATIVE(found->result[0].term[IMK_NOISE_WHITE].value, 1e-4, 0.01);
-    assert_non_null(find(&found->findings, "stamps:coarse"));
+    assert_non_null(find(&found->findings, "stamps:coarse_stamps"));
     imk_identify_log_free(found);
     free(time);
     free(gyro);

@@ -47,7 +47,7 @@ typedef struct look {
     bool over;       /* the end was met */
     bool ended;      /* rows at the end were read, behind others */
     /* Sums over the places. */
-    double jitter_squares, steps, interval;
+    double jitter_squares, steps, interval, span;
 } look;
 
 static uint64_t progress_of(look *l)
@@ -122,6 +122,7 @@ static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool
                              imk_error *error)
 {
     const uint64_t begin = progress_of(l);
+    const size_t before = l->info->rows_read;
     imk_status status = IMK_OK;
     imki_info_rows_begin(&l->rows);
     for (size_t rows = 0, got = 1; rows < rows_most && !l->over; rows += got) {
@@ -134,6 +135,8 @@ static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool
         if (l->time >= 0 && got > 0) {
             if (l->info->rows_read == 0)
                 l->info->first_time = l->column[l->time][0];
+            if (rows == 0)
+                l->span -= l->column[l->time][0];
             l->info->last_time = l->column[l->time][got - 1];
         }
         imki_info_rows_add(&l->rows, got, l->column);
@@ -142,6 +145,8 @@ static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool
         if (status != IMK_OK || (at > begin && at - begin > size_most))
             break;
     }
+    if (l->time >= 0 && l->info->rows_read > before)
+        l->span += l->info->last_time;
     l->info->places++;
     return status;
 }
@@ -253,7 +258,11 @@ static imk_status run(look *l, imk_error *error)
         return status != IMK_OK
                    ? status
                    : imki_fail(&info->findings, error, IMK_ERROR_EMPTY, "no_rows", NULL, 0, NULL);
+    const double counted = (double)(info->rows_read - info->places);
     info->interval = l->interval;
+    info->shared_stamps = l->time >= 0 && info->repeats > info->rows_read / 10 && l->span > 0;
+    if (info->shared_stamps)
+        info->interval = l->span / counted;
     info->jitter = l->steps > 0 ? sqrt(l->jitter_squares / l->steps) : 0;
     estimate_rows(l);
     imki_info_rows_end(&l->rows, l->scratch);

@@ -112,12 +112,16 @@ static void add_products(imki_repeat_counts *s, size_t rows, double *const *colu
     for (size_t b = 0; b < s->channels && b < IMKI_REPEAT_AXES; b++)
         for (size_t a = 0; a <= b; a++) {
             const double *x = columns[s->column[a]] + first, *y = columns[s->column[b]] + first;
-            double sum = 0;
+            double sum = 0, alike = 0, opposed = 0;
             for (size_t i = 1; i < rows; i++) {
                 const double product = (x[i] - x[i - 1]) * (y[i] - y[i - 1]);
                 sum += product == product ? product : 0;
+                alike += product > 0;
+                opposed += product < 0;
             }
             s->product[a][b] += sum;
+            s->alike[a][b] += alike;
+            s->opposed[a][b] += opposed;
         }
 }
 
@@ -241,16 +245,20 @@ static bool is_copy(const imki_repeat_counts *s, size_t a, size_t b)
 }
 
 /* Are the steps of one channel those of another, times a factor? Two sensors have noise of their
- * own; a vibration that both feel would have to be thirty times as large. */
+ * own; a vibration that both feel would have to be thirty times as large. A few rows far off on
+ * both, such as those written for lost ones, outweigh all others: nearly all have to agree in
+ * sign, which a correlation of 0.9995 does in 99 of 100. */
 static bool follows(const imki_repeat_counts *s, size_t a, size_t b, double *factor)
 {
-    const double own = 1e-3;
+    const double own = 1e-3, most_signs = 0.8;
     if (b >= IMKI_REPEAT_AXES)
         return false;
     const double square = s->product[a][a] * s->product[b][b];
+    const double signs = s->alike[a][b] + s->opposed[a][b];
     *factor = s->product[a][a] > 0 ? s->product[a][b] / s->product[a][a] : 0;
     return s->rows >= LEAST && square > 0 && square < HUGE_VAL &&
            (double)s->equal[b][0] < 0.9 * (double)s->rows &&
+           fabs(s->alike[a][b] - s->opposed[a][b]) > most_signs * signs &&
            s->product[a][b] * s->product[a][b] > (1 - own) * square;
 }
 

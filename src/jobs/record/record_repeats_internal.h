@@ -24,8 +24,10 @@ typedef struct imki_repeat_counts {
     size_t stretches;         /* of a long log, counted or not */
     imki_windows held, blank; /* rows that repeat the one before; that have no value at all */
     bool differ[IMK_LOG_COLUMNS_MAX][IMK_LOG_COLUMNS_MAX]; /* of channels, the earlier one first */
-    /* sums of products of the steps from row to row, of the first channels */
+    /* of the first channels: sums of products of the steps from row to row, and how many of these
+     * are above 0 and below */
     double product[IMKI_REPEAT_AXES][IMKI_REPEAT_AXES];
+    double alike[IMKI_REPEAT_AXES][IMKI_REPEAT_AXES], opposed[IMKI_REPEAT_AXES][IMKI_REPEAT_AXES];
     imki_packets packets;
     imki_replay replay;
 } imki_repeat_counts;

@@ -221,8 +221,8 @@ static void tell_groups(const choice *c, size_t repeated, size_t rows, imk_findi
     const bool even = v->most_rows_per_stamp < v->rows_per_stamp + 1.5;
     const bool harmless = coarse && even && r->lost == 0 && r->jumps == 0;
     if (coarse)
-        imki_find(findings, harmless ? IMK_FINDING_NOTE : IMK_FINDING_WARNING, "stamps:coarse",
-                  NULL, IMKI_NUMBERS(v->rows_per_stamp, 1 / r->interval));
+        imki_find(findings, harmless ? IMK_FINDING_NOTE : IMK_FINDING_WARNING,
+                  "stamps:coarse_stamps", NULL, IMKI_NUMBERS(v->rows_per_stamp, 1 / r->interval));
     else
         imki_find(findings, IMK_FINDING_WARNING, "stamps:bunched", NULL,
                   IMKI_NUMBERS(v->rows_per_stamp, 1 / r->interval));

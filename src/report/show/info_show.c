@@ -130,8 +130,10 @@ static void show_seconds(const imk_info_log *info, imk_table *table)
         imk_table_row(table, "clock\tbegins at %.9g s", info->first_time);
     if (info->interval > 0)
         imk_table_row(table, "rate\t%.7g Hz%s", 1 / info->interval,
-                      isfinite(info->first_time) ? ", by the median step of the time" : "");
-    if (info->interval > 0 && isfinite(info->first_time)) {
+                      !isfinite(info->first_time) ? ""
+                      : info->shared_stamps       ? ", by rows and time, as rows share their stamps"
+                                                  : ", by the median step of the time");
+    if (info->interval > 0 && isfinite(info->first_time) && !info->shared_stamps) {
         if (info->jitter > 1e-6 * info->interval)
             imk_table_row(table, "jitter\t%.2g %% of the interval, rms",
                           100 * info->jitter / info->interval);
@@ -179,7 +181,8 @@ static void time_data(const imk_info_log *info, imk_result *result)
     imk_result_quantity(result, "time_origin", seconds * info->time_origin, "s");
     imk_result_quantity(result, "interval",
                         seconds * (info->interval > 0 ? info->interval : (double)NAN), "s");
-    imk_result_quantity(result, "jitter", seconds * info->jitter, "s");
+    imk_result_quantity(result, "jitter",
+                        info->shared_stamps ? (double)NAN : seconds * info->jitter, "s");
     imk_result_count(result, "gaps", (long long)info->gaps);
     imk_result_count(result, "missing", (long long)info->missing);
     imk_result_count(result, "repeats", (long long)info->repeats);

@@ -72,7 +72,8 @@ static const struct words {
     {"stamps:unordered", "rows whose time does not increase are left out", NULL},
     {"stamps:longest_stretch", "only the longest part without missing samples is used", NULL},
     {"stamps:short_stretch", "less than a tenth of the rows is used, as the rest has faults", NULL},
-    {"stamps:coarse", "one stamp is that of several rows", NULL},
+    {"stamps:coarse_stamps", "one stamp is that of several rows",
+     "One stamp for several rows, which are counted."},
     {"stamps:bunched", "rows are stamped in bunches", NULL},
     {"stamps:late", "rows are stamped late", NULL},
     {"stamps:jumps", "the clock steps back", NULL},
@@ -192,8 +193,11 @@ static const char *filled(imk_verdict *v, const char *pattern, const char *names
 void imki_verdict_clause(imk_verdict *v, const char *code)
 {
     const struct words *w = words_of(code);
-    if (w && v->message && v->count > 0)
-        v->message[v->count - 1].clause = w->clause;
+    if (!w || !v->message || v->count == 0)
+        return;
+    imk_message *m = &v->message[v->count - 1];
+    m->clause = w->clause;
+    m->brief = w->title && !strstr(w->title, "%s") ? w->title : m->brief;
 }
 
 void imki_verdict_about(imk_verdict *v, const imk_even_record *record, uint64_t channels)
