@@ -428,6 +428,7 @@ imk_status imk_log_seek(imk_log_reader *reader, double fraction, imk_error *erro
     const imk_status status = reader->codec->seek(reader, fraction, error);
     if (status != IMK_OK)
         return status;
+    memset(&reader->times, 0, sizeof reader->times);
     imki_record_times_start(&reader->times, reader->rate > 0.0 ? 1.0 / reader->rate : 0.0);
     reader->times.findings.time_origin = origin;
     reader->last_time = (double)NAN;

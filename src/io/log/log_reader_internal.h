@@ -188,6 +188,8 @@ imk_status imki_log_part_check(const imk_log_settings *settings, imk_error *erro
  * the order in which they shall be listed. @return IMK_ERROR_MEMORY */
 imk_status imki_log_stream_add(imk_log_reader *reader, const imk_log_stream *stream,
                                imk_error *error);
+/* May the settings mean this one? Where they name none, any. */
+bool imki_log_stream_is_named(const imk_log_reader *reader, const imk_log_stream *stream);
 /* Choose the sensor to read, by the settings or because it is the only readable one.
  * @param nothing  what a log lacks that has none, as in "no topic of type sensor_msgs/Imu"
  * @param index    receives its place in the order of imki_log_stream_add()

@@ -33,11 +33,18 @@ static int likeness(const imk_log_stream *stream, const char *name)
     return length > 0 && length < whole && strcmp(stream->name + whole - length, name) == 0;
 }
 
-static bool is_asked(const imk_log_reader *reader, const imk_log_stream *stream, int alike)
+bool imki_log_stream_is_named(const imk_log_reader *reader, const imk_log_stream *stream)
 {
     const imk_log_settings *s = &reader->settings;
-    return stream->readable && (!s->topic || likeness(stream, s->topic) >= alike) &&
+    return (!s->topic || likeness(stream, s->topic) > 0) &&
            (s->instance == 0 || stream->instance == s->instance - 1);
+}
+
+static bool is_asked(const imk_log_reader *reader, const imk_log_stream *stream, int alike)
+{
+    const char *topic = reader->settings.topic;
+    return stream->readable && imki_log_stream_is_named(reader, stream) &&
+           (!topic || likeness(stream, topic) >= alike);
 }
 
 /* How a stream is asked for, besides what the settings say rightly: "--topic imu --instance 1". */

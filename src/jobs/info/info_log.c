@@ -8,6 +8,7 @@
 #include "jobs/record/record_check_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 enum {
     BLOCK_ROWS = 256,
@@ -42,10 +43,11 @@ typedef struct look {
     double *column[IMK_LOG_COLUMNS_MAX];
     double *scratch, *rests;
     int time;
-    uint64_t size;   /* of the record, in the measure of its progress; 0: not known */
-    double row_size; /* in it */
-    bool over;       /* the end was met */
-    bool ended;      /* rows at the end were read, behind others */
+    uint64_t size;    /* of the record, in the measure of its progress; 0: not known */
+    uint64_t reached; /* how far rows were read */
+    double covered;   /* by the places, in it */
+    bool over;        /* the end was met */
+    bool ended;       /* rows at the end were read, behind others */
     /* Sums over the places. */
     double jitter_squares, steps, interval, span;
 } look;
@@ -117,12 +119,25 @@ static void find_window(look *l)
         l->rows.window_rows = (size_t)fmin(1 / f.interval + 0.5, 1e5);
 }
 
+/* Take out of the block what an earlier place had: where a sensor is rare, some rows of it reach
+ * beyond the next places. @return the rows left */
+static size_t drop_known(look *l, size_t rows)
+{
+    size_t known = 0;
+    while (known < rows && l->time >= 0 && l->column[l->time][known] <= l->info->last_time)
+        known++;
+    for (size_t c = 0; c < l->info->channel_count && known > 0; c++)
+        memmove(l->column[c], l->column[c] + known, (rows - known) * sizeof(double));
+    return rows - known;
+}
+
 /* Read on, up to so many rows and, beyond the first block, so much of the record. */
 static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool first,
                              imk_error *error)
 {
     const uint64_t begin = progress_of(l);
     const size_t before = l->info->rows_read;
+    bool known = begin < l->reached;
     imk_status status = IMK_OK;
     imki_info_rows_begin(&l->rows);
     for (size_t rows = 0, got = 1; rows < rows_most && !l->over; rows += got) {
@@ -132,22 +147,27 @@ static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool
         l->over = got == 0;
         if (first && rows == 0)
             find_window(l);
-        if (l->time >= 0 && got > 0) {
+        const size_t left = known ? drop_known(l, got) : got;
+        known = known && left == 0;
+        if (l->time >= 0 && left > 0) {
             if (l->info->rows_read == 0)
                 l->info->first_time = l->column[l->time][0];
-            if (rows == 0)
+            if (l->info->rows_read == before)
                 l->span -= l->column[l->time][0];
-            l->info->last_time = l->column[l->time][got - 1];
+            l->info->last_time = l->column[l->time][left - 1];
         }
-        imki_info_rows_add(&l->rows, got, l->column);
+        imki_info_rows_add(&l->rows, left, l->column);
         const uint64_t at = progress_of(l);
+        l->reached = left > 0 && at > l->reached ? at : l->reached;
         status = imki_job_progress(l->job, "looking", "B", at, l->size, error);
         if (status != IMK_OK || (at > begin && at - begin > size_most))
             break;
     }
+    const uint64_t end = progress_of(l);
+    l->covered += end > begin ? (double)(end - begin) : 0;
     if (l->time >= 0 && l->info->rows_read > before)
         l->span += l->info->last_time;
-    l->info->places++;
+    l->info->places += l->info->rows_read > before;
     return status;
 }
 
@@ -202,11 +222,12 @@ static imk_status read_places(look *l, imk_error *error)
         const size_t before = l->info->rows_read;
         if (l->source->seek(l->source->context, (double)k / (PLACES + 1), error) != IMK_OK)
             return IMK_OK; /* what was read has to do */
-        status = read_place(l, PLACE_ROWS, place_most, false, error);
         l->over = false;
+        status = read_place(l, PLACE_ROWS, place_most, false, error);
         take_findings(l, before);
     }
-    return status == IMK_OK ? read_end(l, error) : status;
+    l->ended = l->over;
+    return status == IMK_OK && !l->ended ? read_end(l, error) : status;
 }
 
 static void estimate_rows(look *l)
@@ -220,8 +241,9 @@ static void estimate_rows(look *l)
         if (info->settings.rows > 0) {
             info->rows = info->settings.rows;
             info->rows_from = IMK_INFO_INDEX;
-        } else if (l->size > 0 && l->row_size > 0) {
-            info->rows = (uint64_t)((double)l->size / l->row_size + 0.5);
+        } else if (l->size > 0 && l->covered > 0) {
+            const double rows = (double)info->rows_read * (double)l->size / l->covered;
+            info->rows = rows > (double)info->rows_read ? (uint64_t)(rows + 0.5) : info->rows_read;
             info->rows_from = IMK_INFO_SIZE;
         }
     }
@@ -243,15 +265,12 @@ static imk_status run(look *l, imk_error *error)
 {
     imk_info_log *info = l->info;
     const bool full = info->settings.full;
-    const uint64_t begin = progress_of(l);
+    progress_of(l);
     const bool all = full || (l->size > 0 && l->size <= short_record);
     imk_status status =
         read_place(l, all ? SIZE_MAX : FIRST_ROWS, all ? UINT64_MAX : first_most, true, error);
     take_findings(l, 0);
-    const uint64_t at = progress_of(l);
     info->whole = l->over;
-    if (info->rows_read > 0 && at > begin)
-        l->row_size = (double)(at - begin) / (double)info->rows_read;
     if (status == IMK_OK && !info->whole && l->source->seek && l->size > 0)
         status = read_places(l, error);
     if (info->rows_read == 0)

@@ -135,6 +135,22 @@ static void test_a_long_log(void **state)
     json_decref(root);
 }
 
+/* What is found in one of the places is that of this place, and no row counts twice. */
+static void test_gaps_of_a_long_log(void **state)
+{
+    (void)state;
+    assert_int_equal(run("awk 'BEGIN { print \"time [s],gyro_x [deg/s]\"; for (i = 0; i < 1500000; "
+                         "i++) if (i < 5000 || i >= 5500) printf \"%.3f,0.%018d\\n\", i / 1e3, i "
+                         "* 7919 % 1000003 }' >gap.csv"),
+                     0);
+    json_t *root = info_json("$I info gap.csv --json"), *record = record_of(root);
+    assert_true(json_is_false(json_object_get(record, "whole")));
+    assert_int_equal(json_integer_value(json_object_get(record, "gaps")), 1);
+    assert_int_equal(json_integer_value(json_object_get(record, "missing")), 500);
+    CHECK_RELATIVE((double)json_integer_value(json_object_get(record, "rows")), 1499500, 0.02);
+    json_decref(root);
+}
+
 static void test_refusals(void **state)
 {
     (void)state;
@@ -147,8 +163,8 @@ static void test_refusals(void **state)
     assert_int_equal(run("$I info rest.csv --format nonesuch"), 1);
     check_contains(err, "no format is called \"nonesuch\"", "format");
     /* rest, model, no unit, bare, numbers, timeless, the drive and its log, long.npy and its names,
-     * empty */
-    assert_int_equal(sweep(), 11);
+     * gap, empty */
+    assert_int_equal(sweep(), 12);
 }
 
 int main(void)
@@ -159,6 +175,7 @@ int main(void)
         cmocka_unit_test(test_logs_that_lack_something),
         cmocka_unit_test(test_a_log_that_moves),
         cmocka_unit_test(test_a_long_log),
+        cmocka_unit_test(test_gaps_of_a_long_log),
         cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

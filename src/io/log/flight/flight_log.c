@@ -138,6 +138,16 @@ static void estimate(imk_log_reader *reader, bool whole)
     }
 }
 
+/* Is a sensor asked for that was not met yet? It may begin later. */
+static bool is_wanting(const imk_log_reader *reader)
+{
+    const imki_flight_log *log = reader->state;
+    for (size_t i = 0; i < log->stream_count; i++)
+        if (log->streams[i].rows > 0 && imki_log_stream_is_named(reader, &log->streams[i].about))
+            return false;
+    return reader->settings.topic || reader->settings.instance > 0;
+}
+
 static imk_status survey(imk_log_reader *reader, imk_error *error)
 {
     imki_flight_log *log = reader->state;
@@ -148,6 +158,8 @@ static imk_status survey(imk_log_reader *reader, imk_error *error)
     text->hold = free_to_move ? NULL : text->next;
     log->surveying = true;
     imk_status status = walk(reader, log->begin + SURVEY, &whole, error);
+    if (status == IMK_OK && !whole && free_to_move && is_wanting(reader))
+        status = walk(reader, UINT64_MAX, &whole, error);
     log->surveying = false;
     log->surveyed = imki_log_text_place(text);
     if (status == IMK_OK)

@@ -50,6 +50,17 @@ imk_status imki_ros_skip(imki_ros_log *log, uint64_t size, bool *whole, imk_erro
     return status;
 }
 
+/* Is a topic asked for that was not met yet? A file is then looked through to its end. */
+static bool is_wanting(const imki_ros_log *log)
+{
+    const imk_log_settings *s = &log->reader->settings;
+    for (size_t i = 0; i < log->topic_count; i++)
+        if (log->topics[i].seen > 0 &&
+            imki_log_stream_is_named(log->reader, &log->topics[i].stream))
+            return false;
+    return (s->topic || s->instance > 0) && imki_ros_can_seek(log);
+}
+
 void imki_ros_mark(imki_ros_log *log, uint64_t size, bool *enough)
 {
     imki_log_text *text = log->text;
@@ -59,7 +70,8 @@ void imki_ros_mark(imki_ros_log *log, uint64_t size, bool *enough)
         return;
     if (log->held) {
         const uint64_t kept = place - log->looked;
-        *enough = kept > IMKI_ROS_LOOK_BYTES || size > IMKI_ROS_LOOK_BYTES - kept;
+        *enough =
+            (kept > IMKI_ROS_LOOK_BYTES || size > IMKI_ROS_LOOK_BYTES - kept) && !is_wanting(log);
         return;
     }
     log->looked = place;
