@@ -74,6 +74,8 @@ static int look(const info_options *o, imk_log_reader *reader, imk_info_file *fi
     job_progress_end(&shown);
     const imk_findings none = {.count = 0};
     int code = -1;
+    if (status == IMK_OK)
+        (void)log_input_tell(path, &info->findings, IMK_OK, NULL);
     if (info && info->rows_read > 0)
         code = show(o, info, file, path, status == IMK_OK);
     if (status != IMK_OK)

@@ -101,6 +101,9 @@ typedef struct imk_log_findings {
                                             once more; rows before the first */
     bool cut_short; /**< the file ends within a row, message or block, which is left out */
     bool received;  /**< the times are those of recording: no message says when it was measured */
+    /** Sampling interval of the device that the log names, for increments of single samples [s];
+     *  0: not known. */
+    double device_interval;
     /** Arrays of the file, beside those that are read, that cannot be: of a sensor by their names,
      *  or of the group that is read; the first. */
     size_t unread;

@@ -89,6 +89,9 @@ static const struct message {
                   "copy it again"},
     {"received", "the stamps of the messages are all 0; the times at which they were recorded are "
                  "used, which have the jitter of their way"},
+    {"decimated", "the log has {0.4g} increments per second, and its device makes {1.4g}: those "
+                  "that are not recorded are missing, and rates and forces are too low by up to a "
+                  "factor of {2.3g}; record every message"},
     {"unread", "{0} array{0s} of the file cannot be read: left out, the first is {name}, a "
                "{other}; if a sensor is in it, write it as a vector or matrix of numbers"},
     {"unordered", UNORDERED},

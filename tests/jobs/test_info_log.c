@@ -278,6 +278,40 @@ static void test_full(void **state)
     imk_info_log_free(info);
 }
 
+static imk_log_findings findings_of_a_faster_device(void *context)
+{
+    (void)context;
+    return (imk_log_findings){.interval = 0.01, .device_interval = 0.005};
+}
+
+/* Increments of messages that were not recorded are missing. */
+static void test_a_faster_device(void **state)
+{
+    (void)state;
+    made_record m = record_of(1000, at_rest);
+    const imk_record_source source = {.context = &m,
+                                      .column_count = m.columns,
+                                      .columns = m.column,
+                                      .read = read_made,
+                                      .findings = findings_of_a_faster_device,
+                                      .progress = progress_made};
+    const imk_info_log_settings settings = imk_info_log_default();
+    imk_info_log *info;
+    imk_error error;
+    char text[900];
+    CHECK_OK(imk_info_log_run(&source, &settings, NULL, &info, &error));
+    assert_int_equal(info->findings.count, 1);
+    assert_string_equal(info->findings.item[0].code, "decimated");
+    imk_finding_text(&info->findings.item[0], text, sizeof text);
+    check_contains(text, "100 increments per second, and its device makes 200", text);
+    check_contains(text, "a factor of 2;", text);
+    imk_info_log_free(info);
+    m = record_of(1000, at_rest);
+    info = look_at(&m, false);
+    assert_int_equal(info->findings.count, 0);
+    imk_info_log_free(info);
+}
+
 static void test_refusals(void **state)
 {
     (void)state;
@@ -298,10 +332,10 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_figures),       cmocka_unit_test(test_clipping),
-        cmocka_unit_test(test_motion),        cmocka_unit_test(test_holes),
-        cmocka_unit_test(test_a_long_record), cmocka_unit_test(test_full),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_figures),         cmocka_unit_test(test_clipping),
+        cmocka_unit_test(test_motion),          cmocka_unit_test(test_holes),
+        cmocka_unit_test(test_a_long_record),   cmocka_unit_test(test_full),
+        cmocka_unit_test(test_a_faster_device), cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -151,7 +151,9 @@ struct imk_log_reader {
     double rate;        /* [Hz]; 0: from the times */
     double time_origin; /* in the unit of the file */
     double last_time;   /* [s] */
-    double last_step;   /* [s], the last one above 0, for increments */
+    double usual_step;  /* [s], of the times so far, for increments */
+    unsigned even_steps;
+    double device_interval; /* [s], of the device that the log names; 0: not known */
     size_t rows, not_finite, first_not_finite;
     imki_log_label *labels;
     size_t label_count;

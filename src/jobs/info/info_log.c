@@ -284,6 +284,7 @@ static imk_status run(look *l, imk_error *error)
         info->interval = l->span / counted;
     info->jitter = l->steps > 0 ? sqrt(l->jitter_squares / l->steps) : 0;
     estimate_rows(l);
+    imki_tell_manner(l->source, &info->findings);
     imki_info_rows_end(&l->rows, l->scratch);
     find_stated(l);
     info->resting = (double)NAN;

@@ -81,6 +81,24 @@ imk_status imki_source_findings(const imk_record_source *source, size_t rows, do
     return IMK_OK;
 }
 
+void imki_tell_manner(const imk_record_source *source, imk_findings *findings)
+{
+    if (!source->findings)
+        return;
+    const imk_log_findings f = source->findings(source->context);
+    if (f.received)
+        imki_find(findings, IMK_FINDING_WARNING, "received", NULL, 0, NULL);
+    if (f.device_interval > 0 && f.interval > 1.5 * f.device_interval)
+        imki_find(
+            findings, IMK_FINDING_WARNING, "decimated", NULL,
+            IMKI_NUMBERS(1 / f.interval, 1 / f.device_interval, f.interval / f.device_interval));
+    if (f.unread > 0) {
+        char both[96];
+        snprintf(both, sizeof both, "%s\t%s", f.unread_name, f.unread_kind);
+        imki_find(findings, IMK_FINDING_WARNING, "unread", both, IMKI_NUMBERS((double)f.unread));
+    }
+}
+
 void imki_tell_damage(const imk_record_source *source, imk_findings *findings)
 {
     if (!source->findings)
@@ -95,11 +113,5 @@ void imki_tell_damage(const imk_record_source *source, imk_findings *findings)
                   IMKI_NUMBERS((double)f.headers, (double)f.first_header));
     if (f.cut_short)
         imki_find(findings, IMK_FINDING_WARNING, "cut_short", NULL, IMKI_NUMBERS((double)f.rows));
-    if (f.received)
-        imki_find(findings, IMK_FINDING_WARNING, "received", NULL, 0, NULL);
-    if (f.unread > 0) {
-        char both[96];
-        snprintf(both, sizeof both, "%s\t%s", f.unread_name, f.unread_kind);
-        imki_find(findings, IMK_FINDING_WARNING, "unread", both, IMKI_NUMBERS((double)f.unread));
-    }
+    imki_tell_manner(source, findings);
 }

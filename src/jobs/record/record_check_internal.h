@@ -30,7 +30,9 @@ imk_status imki_source_findings(const imk_record_source *source, size_t rows, do
                                 const imk_allocator *allocator, imk_log_findings *found,
                                 imk_error *error);
 
-/* Tell what of a source, which is read to its end, could not be read. */
+/* Tell how a source is read, where that is not as one would think. */
+void imki_tell_manner(const imk_record_source *source, imk_findings *findings);
+/* The same, and what of a source, which is read to its end, could not be read. */
 void imki_tell_damage(const imk_record_source *source, imk_findings *findings);
 
 #endif

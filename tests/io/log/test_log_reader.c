@@ -541,6 +541,33 @@ static void increments_are_divided_by_the_interval(void **state)
     imk_log_close(reader);
 }
 
+/* An increment is that of one sample: lost rows make none smaller, a new rate does. */
+static void increments_behind_lost_rows(void **state)
+{
+    (void)state;
+    enum { ROWS = 200 };
+    char text[ROWS * 40] = "time [ms],dtheta_x [rad]\n";
+    size_t length = strlen(text);
+    double due[ROWS];
+    size_t rows = 0;
+    for (int i = 0; i < ROWS; i++) {
+        const bool slow = i >= 100;
+        if ((i >= 40 && i < 43) || i == 60 || i == 63 || i == 66 || i == 150 || (slow && i % 2))
+            continue; /* lost, or of the half rate */
+        length += (size_t)snprintf(text + length, sizeof text - length, "%d,%d\n", 10 * i, i);
+        due[rows++] = slow ? i / 0.02 : i / 0.01;
+    }
+    table t = read_text(text, NULL);
+    assert_int_equal(t.rows, rows);
+    size_t wrong = 0;
+    for (size_t i = 0; i < rows; i++)
+        wrong += !(fabs(t.data[1][i] - due[i]) <= 1e-9 * due[i]);
+    /* The first rows of the new rate cannot be told from those behind a loss. */
+    assert_in_range(wrong, 1, 3);
+    CHECK_RELATIVE(t.data[1][rows - 1], due[rows - 1], 1e-9);
+    free_table(&t);
+}
+
 static void microsecond_clocks_keep_their_resolution(void **state)
 {
     (void)state;
@@ -963,6 +990,7 @@ int main(void)
         cmocka_unit_test(blank_cells_wait),
         cmocka_unit_test(counts_are_said_to_be_whole),
         cmocka_unit_test(increments_are_divided_by_the_interval),
+        cmocka_unit_test(increments_behind_lost_rows),
         cmocka_unit_test(microsecond_clocks_keep_their_resolution),
         cmocka_unit_test(findings_count_what_is_wrong),
         cmocka_unit_test(findings_hold_over_many_groups),

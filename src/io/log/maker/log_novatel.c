@@ -225,6 +225,7 @@ static imk_status layout(imk_log_reader *reader, imki_messages *m, const imki_me
     if (imu) {
         m->gyro_scale = imu->gyro_scale;
         m->accel_scale = imu->accel_scale;
+        reader->device_interval = imu->rate > 0 ? 1 / imu->rate : 0;
     }
     const imk_status status = imki_log_layout_of(reader, 7, names, error);
     for (size_t i = 0; i < reader->layout.column_count; i++)

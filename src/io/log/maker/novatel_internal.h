@@ -11,6 +11,7 @@ typedef struct imki_novatel_imu {
     bool rates; /* the counts are rates and forces; else increments since the row before */
     double gyro_scale, accel_scale; /* unit per count */
     const char *gyro_unit, *accel_unit;
+    double rate; /* [Hz] at least; 0: not needed */
 } imki_novatel_imu;
 
 /* NULL: the type is not in the table. */
