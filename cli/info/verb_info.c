@@ -37,9 +37,10 @@ static const char *next_command(const imk_info_log *info, const char *path, char
     if (next == IMK_INFO_NEXT_IDENTIFY)
         snprintf(text, size, "%s -o model.yaml",
                  command_line_as("identify", own, sizeof line, line));
-    else if (next == IMK_INFO_NEXT_CALIBRATE)
-        snprintf(text, size, "%s --procedure multiposition -o model.yaml",
-                 command_line_as("calibrate", own, sizeof line, line));
+    else if (next != IMK_INFO_NEXT_NONE)
+        snprintf(text, size, "%s --procedure %s -o model.yaml",
+                 command_line_as("calibrate", own, sizeof line, line),
+                 next == IMK_INFO_NEXT_SIXPOSITION ? "sixposition" : "multiposition");
     else
         return NULL;
     return text;

@@ -72,10 +72,12 @@ typedef struct imk_info_log {
     double duration;              /**< [s] */
     imk_info_basis duration_from;
     double interval; /**< median time step, or 1/rate [s]; 0: not known */
-    /** More than a tenth of the stamps repeat the one before: `interval` is that of the rows read
-     *  on average, and `jitter` says nothing. */
-    bool shared_stamps;
-    double jitter; /**< rms deviation of time steps from it [s] */
+    /** The stamps are no sample times, but coarse, bunched or late: `interval` and the gaps are
+     * what the analyses read from them, by `findings`, and `jitter` says nothing. */
+    bool uneven_stamps;
+    bool rate_stated;   /**< by the settings of the source; `jitter` says nothing */
+    bool times_refused; /**< no rate follows from the times, for the reason in `findings` */
+    double jitter;      /**< rms deviation of time steps from it [s] */
     /** Counts among the rows read: steps that leave samples out, samples left out there, time steps
      *  of 0 and below 0, rows with a value that is no finite number, rows that cannot be read. */
     size_t gaps, missing, repeats, reversals, not_finite, damaged;
@@ -83,6 +85,7 @@ typedef struct imk_info_log {
     imk_info_motion motion;
     double resting;   /**< share of the seconds at rest; NaN: not known */
     size_t attitudes; /**< attitudes of rests that differ by more than 30 deg */
+    size_t holds;     /**< rests of two seconds and more, one behind the other */
     imk_findings findings;
 } imk_info_log;
 

@@ -36,7 +36,8 @@ typedef struct imk_info_file {
 typedef enum imk_info_next {
     IMK_INFO_NEXT_NONE = 0, /**< nothing is sure to fit */
     IMK_INFO_NEXT_IDENTIFY,
-    IMK_INFO_NEXT_CALIBRATE /**< with the procedure multiposition */
+    IMK_INFO_NEXT_MULTIPOSITION, /**< calibrate with this procedure */
+    IMK_INFO_NEXT_SIXPOSITION    /**< calibrate with this one */
 } imk_info_next;
 /** What to do with a log next. */
 IMK_API imk_info_next imk_info_log_next(const imk_info_log *info);

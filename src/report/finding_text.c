@@ -70,6 +70,8 @@ static const struct message {
     {"time_digits",
      "the time has too few digits: it stays the same for {0.0f} rows on average and "
      "then steps by {1g} s, as seconds since 1970 do in single precision; " NO_TIMES},
+    {"time_stands", "the time stands still in {0} row{0s}, and its steps are even otherwise: leave "
+                    "that part out with --after or --before"},
     {"jitter", "the timestamps scatter by {0.1f} % of the sample interval; the samples are treated "
                "as evenly spaced"},
     {"clock_leaps", "the timestamps do not fit the number of rows; the clock may have jumped or "
@@ -92,6 +94,9 @@ static const struct message {
     {"decimated", "the log has {0.4g} increments per second, and its device makes {1.4g}: those "
                   "that are not recorded are missing, and rates and forces are too low by up to a "
                   "factor of {2.3g}; record every message"},
+    {"uneven_increments", "each increment is divided by its own step of the time, and the steps "
+                          "scatter by {0.2g} %: if the samples are even and only the times are "
+                          "coarse or late, state --rate"},
     {"unread", "{0} array{0s} of the file cannot be read: left out, the first is {name}, a "
                "{other}; if a sensor is in it, write it as a vector or matrix of numbers"},
     {"unordered", UNORDERED},

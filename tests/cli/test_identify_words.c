@@ -392,8 +392,8 @@ static void test_shared_stamps(void **state)
     check_contains(out, "\nOne stamp for several rows, which are counted.\n", "brief");
     assert_null(strstr(out, "output step"));
     assert_int_equal(run("$I info log.csv"), 0);
-    check_contains(out, "rate      20.00", "rate");
-    check_contains(out, "Hz, by rows and time, as rows share their stamps\n", "origin");
+    check_contains(out, "rate      20 Hz, as the analyses read the stamps\n", "rate");
+    check_contains(out, "\nNote: one stamp of the time column is that of 2 rows", "note");
     assert_null(strstr(out, "jitter"));
     sweep();
 }

@@ -740,6 +740,10 @@ static void test_why_there_is_no_rate(void **context)
         l.time[i] = 0.01 * (double)(ROWS - 100 - i / 100 * 100 + i % 100);
     check_reason(&l, IMK_GAPS_KEEP, IMK_ERROR_TIME_ORDER, "time_order");
     check_reason(&l, IMK_GAPS_LONGEST, IMK_OK, "stamps:short_stretch");
+    make(&l, 1, ROWS, 100);
+    for (size_t i = 0; i < ROWS / 5; i++) /* the clock is not set yet */
+        l.time[i] = 0;
+    check_reason(&l, IMK_GAPS_KEEP, IMK_ERROR_TIME_ORDER, "time_stands");
     make(&l, 1, MOST, 10);
     round_down(&l, 128);
     check_reason(&l, IMK_GAPS_KEEP, IMK_ERROR_TIME_ORDER, "time_digits");

@@ -49,7 +49,8 @@ typedef struct look {
     bool over;        /* the end was met */
     bool ended;       /* rows at the end were read, behind others */
     /* Sums over the places. */
-    double jitter_squares, steps, interval, span;
+    double jitter_squares, steps, interval;
+    imki_info_stamps stamps;
 } look;
 
 static uint64_t progress_of(look *l)
@@ -152,10 +153,10 @@ static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool
         if (l->time >= 0 && left > 0) {
             if (l->info->rows_read == 0)
                 l->info->first_time = l->column[l->time][0];
-            if (l->info->rows_read == before)
-                l->span -= l->column[l->time][0];
             l->info->last_time = l->column[l->time][left - 1];
         }
+        if (first)
+            imki_info_stamps_add(&l->stamps, left, l->column);
         imki_info_rows_add(&l->rows, left, l->column);
         const uint64_t at = progress_of(l);
         l->reached = left > 0 && at > l->reached ? at : l->reached;
@@ -165,8 +166,6 @@ static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool
     }
     const uint64_t end = progress_of(l);
     l->covered += end > begin ? (double)(end - begin) : 0;
-    if (l->time >= 0 && l->info->rows_read > before)
-        l->span += l->info->last_time;
     l->info->places += l->info->rows_read > before;
     return status;
 }
@@ -180,8 +179,10 @@ static void take_findings(look *l, size_t rows_before)
     const imk_log_findings f = l->source->findings(l->source->context);
     const double steps = (double)(info->rows_read - rows_before);
     info->time_origin = f.time_origin;
-    info->gaps += f.gaps;
-    info->missing += f.missing;
+    if (!l->stamps.settled) {
+        info->gaps += f.gaps;
+        info->missing += f.missing;
+    }
     info->repeats += f.repeats;
     info->reversals += f.reversals;
     info->not_finite += f.not_finite;
@@ -193,6 +194,8 @@ static void take_findings(look *l, size_t rows_before)
         l->interval = f.interval;
     l->steps += steps;
     l->jitter_squares += steps * f.jitter * f.jitter;
+    if (rows_before == 0 && l->source->rate == 0)
+        imki_info_stamps_settle(&l->stamps, info, &f);
 }
 
 /* The end: so far before it that it is met, at first one megabyte. Where a sensor is rare among
@@ -277,11 +280,9 @@ static imk_status run(look *l, imk_error *error)
         return status != IMK_OK
                    ? status
                    : imki_fail(&info->findings, error, IMK_ERROR_EMPTY, "no_rows", NULL, 0, NULL);
-    const double counted = (double)(info->rows_read - info->places);
-    info->interval = l->interval;
-    info->shared_stamps = l->time >= 0 && info->repeats > info->rows_read / 10 && l->span > 0;
-    if (info->shared_stamps)
-        info->interval = l->span / counted;
+    info->uneven_stamps = l->stamps.settled;
+    info->rate_stated = l->source->rate > 0;
+    info->interval = l->stamps.settled ? l->stamps.interval : l->interval;
     info->jitter = l->steps > 0 ? sqrt(l->jitter_squares / l->steps) : 0;
     estimate_rows(l);
     imki_tell_manner(l->source, &info->findings);
@@ -316,9 +317,15 @@ imk_status imk_info_log_run(const imk_record_source *source, const imk_info_log_
     if (l) {
         *l = (look){.source = source, .job = job, .info = made};
         find_columns(l);
+        l->stamps.failed = l->time < 0;
+        l->stamps.stamps = (imki_stamps){.allocator = job->allocator,
+                                         .column_count = made->channel_count,
+                                         .time_column = l->time < 0 ? 0 : (size_t)l->time};
     }
     status = l && take_memory(l, &arena) ? run(l, error)
                                          : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    if (l)
+        imki_stamps_free(&l->stamps.stamps);
     imki_arena_free(&arena);
     return status;
 }

@@ -4,10 +4,12 @@
 #define IMUKI_INFO_LOG_INTERNAL_H
 
 #include "imukit/info_log.h"
+#include "jobs/record/record_stamps_internal.h"
 
 enum {
     IMKI_INFO_AXES = 6,          /* three gyros, three accelerometers */
     IMKI_INFO_WINDOW_ROWS = 16,  /* at least */
+    IMKI_INFO_VALUES = 8,        /* of a column in a window, at least */
     IMKI_INFO_WINDOWS = 1 << 14, /* kept; of a longer record every second one, fourth … */
     IMKI_INFO_SAMPLE = 1 << 14   /* rows that show the step between values */
 };
@@ -21,7 +23,7 @@ typedef struct imki_info_window {
 /* Sums of a column. */
 typedef struct imki_info_sums {
     double sum, squares;                       /* of the window at present */
-    bool hole;                                 /* in the window: a value that is none */
+    size_t values;                             /* in it */
     double total;                              /* of all rows */
     double within;                             /* sum of squares about the means of windows */
     size_t degrees;                            /* of it */
@@ -40,6 +42,20 @@ typedef struct imki_info_rows {
     size_t window_count, stride, passed;
     bool follows;
 } imki_info_rows;
+
+/* Stamps of the first place. */
+typedef struct imki_info_stamps {
+    imki_stamps stamps;
+    bool failed;     /* memory is exhausted, or there are none */
+    bool settled;    /* they are no sample times */
+    double interval; /* then [s]; 0: none */
+} imki_info_stamps;
+
+void imki_info_stamps_add(imki_info_stamps *stamps, size_t rows, double *const *column);
+/* Where the stamps are no sample times: interval, gaps, and what is told of them.
+ * @param found  of the stamps as they are */
+void imki_info_stamps_settle(imki_info_stamps *stamps, imk_info_log *info,
+                             const imk_log_findings *found);
 
 /* Begin a place: the rows to come do not follow those before. */
 void imki_info_rows_begin(imki_info_rows *r);

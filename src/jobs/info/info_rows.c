@@ -13,7 +13,7 @@ void imki_info_rows_begin(imki_info_rows *r)
     for (size_t c = 0; c < r->info->channel_count; c++) {
         r->sums[c].sum = r->sums[c].squares = 0;
         r->sums[c].run_low = r->sums[c].run_high = 0;
-        r->sums[c].hole = false;
+        r->sums[c].values = 0;
     }
 }
 
@@ -29,7 +29,6 @@ static void add_value(imk_info_channel *channel, imki_info_sums *s, double value
 {
     if (!isfinite(value)) {
         s->run_low = s->run_high = 0;
-        s->hole = true;
         return;
     }
     if (channel->finite == 0)
@@ -45,32 +44,35 @@ static void add_value(imk_info_channel *channel, imki_info_sums *s, double value
     run_at(value, channel->lowest, &s->run_low, &s->at_low);
     run_at(value, channel->highest, &s->run_high, &s->at_high);
     channel->finite++;
+    s->values++;
     s->total += value;
     s->sum += value - channel->mean;
     s->squares += (value - channel->mean) * (value - channel->mean);
 }
 
-/* Columns with a hole give nothing to the window; without a sensor's axis it shows no motion. */
+/* Columns without most of their values give nothing to the window; without a sensor's axis it shows
+ * no motion. */
 static void end_window(imki_info_rows *r)
 {
-    const double n = (double)r->window_rows;
     imki_info_window w = {.follows = r->follows};
     bool whole = true;
     for (size_t c = 0; c < r->info->channel_count; c++) {
         imki_info_sums *s = &r->sums[c];
-        const double mean = s->sum / n, within = s->squares - n * mean * mean;
+        const double n = (double)s->values;
+        const bool holds = s->values >= IMKI_INFO_VALUES && 4 * s->values >= r->window_rows;
+        const double mean = holds ? s->sum / n : 0, within = s->squares - n * mean * mean;
         for (int a = 0; a < IMKI_INFO_AXES; a++)
             if (r->axis[a] == (int)c) {
-                whole = whole && !s->hole;
+                whole = whole && holds;
                 w.mean[a] = r->info->channel[c].mean + mean;
-                w.scatter[a] = within > 0 ? sqrt(within / (n - 1)) : 0;
+                w.scatter[a] = holds && within > 0 ? sqrt(within / (n - 1)) : 0;
             }
-        if (!s->hole) {
+        if (holds) {
             s->within += within > 0 ? within : 0;
-            s->degrees += r->window_rows - 1;
+            s->degrees += s->values - 1;
         }
         s->sum = s->squares = 0;
-        s->hole = false;
+        s->values = 0;
     }
     r->in_window = 0;
     r->follows = whole;

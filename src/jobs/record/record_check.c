@@ -86,6 +86,13 @@ void imki_tell_manner(const imk_record_source *source, imk_findings *findings)
     if (!source->findings)
         return;
     const imk_log_findings f = source->findings(source->context);
+    bool increments = false;
+    for (size_t c = 0; c < source->column_count; c++)
+        increments = increments || source->columns[c].increment;
+    const double scatter = f.interval > 0 ? f.jitter / f.interval : 0, told = 0.02;
+    if (increments && source->rate == 0 && scatter > told)
+        imki_find(findings, IMK_FINDING_WARNING, "uneven_increments", NULL,
+                  IMKI_NUMBERS(100 * scatter));
     if (f.received)
         imki_find(findings, IMK_FINDING_WARNING, "received", NULL, 0, NULL);
     if (f.device_interval > 0 && f.interval > 1.5 * f.device_interval)

@@ -314,6 +314,9 @@ static imk_status refuse_times(const imk_log_findings *f, double first, imk_find
     } else if (same > rows / 2 && f->jitter < even * f->interval) {
         code = "time_digits";
         numbers[0] = rows / (rows - same);
+    } else if (same > 1 && f->reversals == 0 && f->jitter < even * f->interval) {
+        code = "time_stands";
+        numbers[0] = same;
     } else if (f->reversals > 0 && f->jitter < even * f->interval) {
         code = "time_order";
         numbers[0] = back;

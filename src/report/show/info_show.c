@@ -117,6 +117,12 @@ static void show_plain_times(const imk_info_log *info, imk_table *table)
         imk_table_row(table, "step\t%.7g, the median of the time", info->interval);
 }
 
+static bool has_jitter(const imk_info_log *info)
+{
+    return info->interval > 0 && isfinite(info->first_time) && !info->uneven_stamps &&
+           !info->rate_stated;
+}
+
 static void show_seconds(const imk_info_log *info, imk_table *table)
 {
     if (info->duration < 0)
@@ -131,9 +137,10 @@ static void show_seconds(const imk_info_log *info, imk_table *table)
     if (info->interval > 0)
         imk_table_row(table, "rate\t%.7g Hz%s", 1 / info->interval,
                       !isfinite(info->first_time) ? ""
-                      : info->shared_stamps       ? ", by rows and time, as rows share their stamps"
+                      : info->rate_stated         ? ", as stated"
+                      : info->uneven_stamps       ? ", as the analyses read the stamps"
                                                   : ", by the median step of the time");
-    if (info->interval > 0 && isfinite(info->first_time) && !info->shared_stamps) {
+    if (has_jitter(info)) {
         if (info->jitter > 1e-6 * info->interval)
             imk_table_row(table, "jitter\t%.2g %% of the interval, rms",
                           100 * info->jitter / info->interval);
@@ -181,8 +188,8 @@ static void time_data(const imk_info_log *info, imk_result *result)
     imk_result_quantity(result, "time_origin", seconds * info->time_origin, "s");
     imk_result_quantity(result, "interval",
                         seconds * (info->interval > 0 ? info->interval : (double)NAN), "s");
-    imk_result_quantity(result, "jitter",
-                        info->shared_stamps ? (double)NAN : seconds * info->jitter, "s");
+    imk_result_quantity(result, "jitter", has_jitter(info) ? seconds * info->jitter : (double)NAN,
+                        "s");
     imk_result_count(result, "gaps", (long long)info->gaps);
     imk_result_count(result, "missing", (long long)info->missing);
     imk_result_count(result, "repeats", (long long)info->repeats);
@@ -275,14 +282,34 @@ static bool is_counted(const imk_info_log *info)
     return any;
 }
 
+/* A gyro or an accelerometer whose values are all the same. */
+static const imk_info_channel *find_constant(const imk_info_log *info)
+{
+    for (size_t i = 0; i < info->channel_count; i++) {
+        const imk_info_channel *c = &info->channel[i];
+        if ((c->column.quantity == IMK_QUANTITY_ANGULAR_RATE ||
+             c->column.quantity == IMK_QUANTITY_SPECIFIC_FORCE) &&
+            c->lowest == c->highest)
+            return c;
+    }
+    return NULL;
+}
+
+/* Each is suggested where it will run: multiposition needs twelve holds, and the places of a long
+ * log may show one twice. */
 imk_info_next imk_info_log_next(const imk_info_log *info)
 {
-    const bool times = info->duration > 0 && 100 * info->reversals < info->rows_read;
-    if (!info->stated || is_counted(info) || !times)
+    const bool times =
+        info->duration > 0 && 100 * info->reversals < info->rows_read && !info->times_refused;
+    if (!info->stated || is_counted(info) || !times || find_constant(info))
         return IMK_INFO_NEXT_NONE;
-    return info->motion == IMK_INFO_REST    ? IMK_INFO_NEXT_IDENTIFY
-           : info->motion == IMK_INFO_POSES ? IMK_INFO_NEXT_CALIBRATE
-                                            : IMK_INFO_NEXT_NONE;
+    if (info->motion == IMK_INFO_REST)
+        return IMK_INFO_NEXT_IDENTIFY;
+    if (info->motion != IMK_INFO_POSES || !info->whole)
+        return IMK_INFO_NEXT_NONE;
+    return info->holds >= 12                          ? IMK_INFO_NEXT_MULTIPOSITION
+           : info->holds == 6 && info->attitudes == 6 ? IMK_INFO_NEXT_SIXPOSITION
+                                                      : IMK_INFO_NEXT_NONE;
 }
 
 /* What the numbers of an accelerometer without a unit say. */
@@ -306,8 +333,22 @@ static void show_unstated(const imk_info_log *info, imk_result *result)
                         sqrt(square));
 }
 
+/* What is to be known of the stamps; warnings stand apart. */
+static void show_notes(const imk_info_log *info, imk_result *result)
+{
+    char text[900];
+    for (size_t k = 0; k < info->findings.count; k++)
+        if (info->findings.item[k].level == IMK_FINDING_NOTE) {
+            imk_finding_text(&info->findings.item[k], text, sizeof text);
+            imk_result_line(result, "Note: %s.", text);
+        }
+}
+
 static void show_motion(const imk_info_log *info, imk_result *result)
 {
+    const imk_info_channel *constant = find_constant(info);
+    if (constant)
+        imk_result_line(result, "All values of %s are the same.", constant->column.name);
     if (!info->stated) {
         show_unstated(info, result);
         return;
@@ -385,6 +426,7 @@ void imk_show_info_log(const imk_info_log *info, const imk_info_file *file, cons
             imk_result_line(result, "%s:", chosen);
         show_times(info, result);
         show_channels(info, result);
+        show_notes(info, result);
         show_motion(info, result);
     }
     if (next)

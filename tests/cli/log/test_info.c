@@ -103,6 +103,28 @@ static void test_logs_that_lack_something(void **state)
     assert_int_equal(run("$I allan bare.csv"), 1);
 }
 
+/* What is suggested fits the log: six faces are no twelve holds, and a constant axis is no noise.
+ */
+static void test_what_is_suggested(void **state)
+{
+    (void)state;
+    assert_int_equal(run("awk 'BEGIN { srand(5); print \"time [s],accel_x [g],accel_y [g],accel_z "
+                         "[g]\"; for (i = 0; i < 9000; i++) { p = int(i / 1500); f[0] = f[1] = "
+                         "f[2] = 0; f[p % 3] = p < 3 ? 1 : -1; printf \"%.2f\", i / 100; for (k = "
+                         "0; k < 3; k++) printf \",%.5f\", f[k] + (rand() - .5) / (i % 1500 > 1400 "
+                         "? 2 : 100); print \"\" } }' >faces.csv"),
+                     0);
+    assert_int_equal(run("$I info faces.csv"), 0);
+    check_contains(out, "The sensor rests in 6 attitudes", out);
+    check_contains(out, "Next: imukit calibrate faces.csv --procedure sixposition -o model.yaml\n",
+                   out);
+    assert_int_equal(run("$I calibrate faces.csv --procedure sixposition -o model.yaml"), 0);
+    assert_int_equal(run("awk -F, -v OFS=, 'NR > 1 { $2 = 0 } 1' rest.csv >constant.csv"), 0);
+    assert_int_equal(run("$I info constant.csv"), 0);
+    check_contains(out, "All values of gyro_x are the same.\n", out);
+    assert_null(strstr(out, "Next:"));
+}
+
 static void test_a_log_that_moves(void **state)
 {
     (void)state;
@@ -162,9 +184,9 @@ static void test_refusals(void **state)
     check_contains(err, "leave --topic and --instance out", "topic");
     assert_int_equal(run("$I info rest.csv --format nonesuch"), 1);
     check_contains(err, "no format is called \"nonesuch\"", "format");
-    /* rest, model, no unit, bare, numbers, timeless, the drive and its log, long.npy and its names,
-     * gap, empty */
-    assert_int_equal(sweep(), 12);
+    /* rest, model, no unit, faces, constant, bare, numbers, timeless, the drive and its log,
+     * long.npy and its names, gap, empty */
+    assert_int_equal(sweep(), 14);
 }
 
 int main(void)
@@ -173,6 +195,7 @@ int main(void)
         cmocka_unit_test(test_a_log_at_rest),
         cmocka_unit_test(test_suggestions),
         cmocka_unit_test(test_logs_that_lack_something),
+        cmocka_unit_test(test_what_is_suggested),
         cmocka_unit_test(test_a_log_that_moves),
         cmocka_unit_test(test_a_long_log),
         cmocka_unit_test(test_gaps_of_a_long_log),
