@@ -114,7 +114,7 @@ void imki_info_motion(imki_info_rows *r, double *rests, double *sorted)
     info->attitudes = count_attitudes(r, rests);
     for (size_t k = 1; k < r->window_count; k++)
         info->holds += rests[k] > 0 && rests[k - 1] > 0 && (k == 1 || rests[k - 2] == 0);
-    info->motion = info->attitudes >= 3 && info->resting >= 0.2    ? IMK_INFO_POSES
+    info->motion = info->attitudes >= 2 && info->resting >= 0.2    ? IMK_INFO_POSES
                    : info->resting >= 0.98 && info->attitudes <= 1 ? IMK_INFO_REST
                                                                    : IMK_INFO_MOVES;
 }

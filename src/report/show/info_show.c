@@ -344,6 +344,30 @@ static void show_notes(const imk_info_log *info, imk_result *result)
         }
 }
 
+/* A steady turn about the vertical looks like rest with a large zero offset. */
+static void show_rest(const imk_info_log *info, const char *where, imk_result *result)
+{
+    const double large = 3 * imk_unit_of("deg/s").scale;
+    const imk_info_channel *fastest = NULL;
+    for (size_t i = 0; i < info->channel_count; i++) {
+        const imk_info_channel *c = &info->channel[i];
+        if (c->column.quantity == IMK_QUANTITY_ANGULAR_RATE && fabs(c->mean) > large &&
+            (!fastest || fabs(c->mean) > fabs(fastest->mean)))
+            fastest = c;
+    }
+    if (info->resting < 1)
+        imk_result_line(result,
+                        "The sensor is at rest for %.3g %% of the time%s, and touched or moved in "
+                        "the rest of it.",
+                        floor(1000 * info->resting) / 10, where);
+    else if (fastest)
+        imk_result_line(result,
+                        "The sensor is at rest%s, or turns steadily: the mean of %s is %.3g deg/s.",
+                        where, fastest->column.name, fastest->mean / imk_unit_of("deg/s").scale);
+    else
+        imk_result_line(result, "The sensor is at rest%s.", where);
+}
+
 static void show_motion(const imk_info_log *info, imk_result *result)
 {
     const imk_info_channel *constant = find_constant(info);
@@ -356,13 +380,13 @@ static void show_motion(const imk_info_log *info, imk_result *result)
     const char *where = info->whole ? "" : " in the places read";
     switch (info->motion) {
     case IMK_INFO_REST:
-        imk_result_line(result, "The sensor is at rest%s.", where);
+        show_rest(info, where, result);
         break;
     case IMK_INFO_POSES:
         imk_result_line(result,
-                        "The sensor rests in %zu attitudes or more, %.0f %% of the time%s, and is "
+                        "The sensor rests in %zu attitudes%s, %.0f %% of the time%s, and is "
                         "moved between them.",
-                        info->attitudes, 100 * info->resting, where);
+                        info->attitudes, info->whole ? "" : " or more", 100 * info->resting, where);
         break;
     case IMK_INFO_MOVES:
         imk_result_line(result, "The sensor is moved: it rests %.0f %% of the time%s.",
