@@ -38,10 +38,11 @@ static void test_from_model(void **state)
     check_message("$I convert model.yaml out.yaml --to navego --rate 200Hz", 0,
                   "imukit convert: warning: gyro.noise.bias_instability is not held by the format "
                   "navego\n");
-    check_message("$I convert model.yaml out.sdf --to gazebo", 1,
-                  "imukit convert: error: model.yaml: stddev: \"stddev\" is per sample, and the "
-                  "sampling rate is not known; add --rate 200Hz (samples per second)\nNext: imukit "
-                  "convert model.yaml out.sdf --to gazebo --rate 200Hz\n");
+    check_message(
+        "$I convert model.yaml out.sdf --to gazebo", 1,
+        "imukit convert: error: model.yaml: stddev: \"stddev\" is per sample, and the "
+        "sampling rate is not known; add --rate RATE (samples per second, as 200Hz)\nNext: imukit "
+        "convert model.yaml out.sdf --to gazebo --rate RATE\n");
     check_message("$I convert ADIS16465 out.m --to navego --rate 200Hz 2>/dev/null", 0, "");
     check_message(
         "$I convert model.yaml out.x --to kalibra", 2,
@@ -116,9 +117,9 @@ static void test_walk_options(void **state)
         {"o.yaml --from kalibr --use-bounds", "state the format with --to", 2},
         {"o.yaml --to kalibr --bias-instability-tau 1e9s", "--bias-instability-tau", 2},
         {"o.yaml --to kalibr --frame-rate 10Hz", "--frame-rate is for the format glim", 2},
-        {"o.json --to glim", "add --frame-rate 10Hz", 1},
-        {"o.yaml --to fast-lio", "add --rate 200Hz", 1},
-        {"o.yaml --to orb-slam3", "add --rate 200Hz", 1},
+        {"o.json --to glim", "add --frame-rate RATE", 1},
+        {"o.yaml --to fast-lio", "add --rate RATE", 1},
+        {"o.yaml --to orb-slam3", "add --rate RATE", 1},
     };
     char line[300];
     put("imu.yaml", "gyroscope_noise_density: 1e-4\ngyroscope_random_walk: 1e-6\n"
@@ -142,10 +143,11 @@ static void test_refused(void **state)
     check_message("$I convert " CORPUS "vins.yaml' out.yaml | cat", 0,
                   "imukit convert: error: " SOURCE_DIRECTORY
                   "/fuzz/corpus/parameters/vins.yaml: acc_n: \"acc_n\" and the others are per "
-                  "sample or per sqrt(Hz): the file does not say which; add --rate 200Hz (if the "
+                  "sample or per sqrt(Hz): the file does not say which; add --rate RATE (samples "
+                  "per second, if the "
                   "numbers are per sample, as VINS takes them; if they are densities, add "
                   "--density two-sided)\nNext: imukit convert " SOURCE_DIRECTORY
-                  "/fuzz/corpus/parameters/vins.yaml out.yaml --rate 200Hz\n");
+                  "/fuzz/corpus/parameters/vins.yaml out.yaml --rate RATE\n");
     put("deg.yaml", "gyroscope_noise_density: 0.3\n");
     check_message(
         "$I convert deg.yaml out.yaml", 1,

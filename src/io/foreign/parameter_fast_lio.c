@@ -21,7 +21,7 @@ static bool rate_is_known(imki_parameters *p)
         return true;
     imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "gyr_cov",
                           "\"gyr_cov\" and the others are per sample, and the rate is not known",
-                          "add --rate 200Hz (samples per second)");
+                          "add --rate RATE (samples per second, as 200Hz)");
     return false;
 }
 

@@ -54,9 +54,9 @@ static const struct format {
     [IMK_PARAMETERS_ORB_SLAM3] = {"orb-slam3", imki_orb_slam3_read, imki_orb_slam3_write, false,
                                   false, IMKI_WALK_NEEDED},
     [IMK_PARAMETERS_GTSAM] = {"gtsam", imki_gtsam_read, imki_gtsam_write, false, false,
-                              IMKI_WALK_NEEDED},
+                              IMKI_WALK_OF_EACH},
     [IMK_PARAMETERS_AIRSIM] = {"airsim", imki_airsim_read, imki_airsim_write, true, false,
-                               IMKI_WALK_HELD},
+                               IMKI_WALK_WANTED},
     [IMK_PARAMETERS_FUSION] = {"fusion", imki_fusion_read, imki_fusion_write, false, false,
                                IMKI_WALK_NONE},
 };

@@ -324,7 +324,7 @@ void imki_filter_write(imki_parameters *p)
     if (!(p->settings->rate > 0))
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "rate",
                               "\"Phi\" and \"Q_d\" depend on the sampling rate, which is not known",
-                              "add --rate 200Hz (samples per second)");
+                              "add --rate RATE (samples per second, as 200Hz)");
     tree_writer w = {.p = p};
     if (p->is_json)
         imki_text_add(&p->out, "{");

@@ -253,7 +253,7 @@ static double find_rate(imki_parameters *p, const sensor *s)
         imki_parameter_refuse_at(p, s->noise[s->noise[0].place[STDDEV].field ? 0 : 1].place[STDDEV],
                                  IMK_ERROR_KEY_MISSING,
                                  "\"stddev\" is per sample, and update_rate is missing",
-                                 "add --rate 200Hz (samples per second)");
+                                 "add --rate RATE (samples per second, as 200Hz)");
     return rate;
 }
 
@@ -349,7 +349,7 @@ void imki_gazebo_write(imki_parameters *p)
     if (!(rate > 0) && (has_white(p->origin[0]) || has_white(p->origin[1])))
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "stddev",
                               "\"stddev\" is per sample, and the sampling rate is not known",
-                              "add --rate 200Hz (samples per second)");
+                              "add --rate RATE (samples per second, as 200Hz)");
     imki_text_add(&p->out, "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\">\n  <model "
                            "name=\"imu\">\n    <link name=\"link\">\n      <sensor name=\"imu\" "
                            "type=\"imu\">\n        <always_on>true</always_on>\n");

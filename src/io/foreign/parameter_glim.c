@@ -21,7 +21,7 @@ static void read_walk(imki_parameters *p, int sensors)
         return;
     if (!(p->settings->frame_rate > 0)) {
         imki_note(p, true,
-                  "imu_bias_noise is per frame and is not read: add --frame-rate 10Hz (LiDAR scans "
+                  "imu_bias_noise is per frame and is not read: add --frame-rate RATE (LiDAR scans "
                   "per second)");
         return;
     }
@@ -71,7 +71,7 @@ static double walk_per_frame(imki_parameters *p, const char **of)
     if (largest > 0 && !(p->settings->frame_rate > 0))
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, keys[2],
                               "\"imu_bias_noise\" is per frame, and the frame rate is not known",
-                              "add --frame-rate 10Hz (LiDAR scans per second)");
+                              "add --frame-rate RATE (LiDAR scans per second, as 10Hz)");
     else if (largest > 0 && k[0] != k[1])
         imki_note(p, true,
                   "imu_bias_noise is one number for both sensors: that of the %s is written", *of);

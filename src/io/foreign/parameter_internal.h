@@ -74,7 +74,8 @@ typedef enum imki_walk {
     IMKI_WALK_HELD,   /* a place, which may be 0 */
     IMKI_WALK_WANTED, /* the program runs without, but its bias then never changes, or by a default
                        */
-    IMKI_WALK_NEEDED  /* the program does not run with 0 */
+    IMKI_WALK_NEEDED, /* the program does not run with 0 */
+    IMKI_WALK_OF_EACH /* nor with 0 on one axis */
 } imki_walk;
 
 /* What is to be written for p->source: the same, or *changed with what stands for K by the settings

@@ -3,11 +3,13 @@
  * settings file of OpenCV.
  *
  * Tracking.cc of UZ-SLAMLab/ORB_SLAM3 multiplies the noises by sqrt(IMU.Frequency) and divides the
- * walks by it to have them per sample: densities, N and K. It wants numbers with a point, and the
- * information of the walk is one over its variance (ImuTypes.cc), so that it cannot be 0. */
+ * walks by it to have them per sample: densities, N and K. Settings.cc, for files of File.version
+ * 1.0, reads all five as real numbers, which need a point in most of its versions; the parser of
+ * older files in Tracking.cc wants an integer for IMU.Frequency alone. The information of the walk
+ * is one over its variance (ImuTypes.cc), so that it cannot be 0. */
 #include "parameter_internal.h"
 
-#include <math.h>
+#include <string.h>
 
 static const char *const keys[] = {"IMU.NoiseGyro", "IMU.GyroWalk", "IMU.NoiseAcc", "IMU.AccWalk",
                                    "IMU.Frequency"};
@@ -31,13 +33,9 @@ void imki_orb_slam3_write(imki_parameters *p)
     if (!(rate > 0)) {
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, keys[IMKI_DENSITIES],
                               "\"IMU.Frequency\" is not known, and ORB-SLAM3 stops without it",
-                              "add --rate 200Hz (samples per second)");
+                              "add --rate RATE (samples per second, as 200Hz)");
         return;
     }
-    if (rate != floor(rate))
-        imki_note(p, true,
-                  "IMU.Frequency is not an integer, which early versions of ORB-SLAM3 "
-                  "refuse");
     imki_text_add(
         &p->out,
         "%%YAML:1.0\n\n# ORB-SLAM3: continuous-time, two-sided densities; it converts them "
@@ -50,5 +48,7 @@ void imki_orb_slam3_write(imki_parameters *p)
                                                   .scale = 1,
                                                   .both_needed = true,
                                                   .with_point = true});
-    imki_text_add(&p->out, "%s: %s  # [Hz]\n", keys[IMKI_DENSITIES], imki_shortest(rate).text);
+    const char *rate_text = imki_shortest(rate).text;
+    imki_text_add(&p->out, "%s: %s%s  # [Hz]; without File.version 1.0 an integer\n",
+                  keys[IMKI_DENSITIES], rate_text, strpbrk(rate_text, ".e") ? "" : ".0");
 }

@@ -147,8 +147,8 @@ static double vins_scale(imki_parameters *p)
         imki_parameter_refuse(
             p, IMK_ERROR_KEY_MISSING, "acc_n",
             "\"acc_n\" and the others are per sample or per sqrt(Hz): the file does not say which",
-            "add --rate 200Hz (if the numbers are per sample, as VINS takes them; if they are "
-            "densities, add --density two-sided)");
+            "add --rate RATE (samples per second, if the numbers are per sample, as VINS takes "
+            "them; if they are densities, add --density two-sided)");
     return s->rate > 0 ? 1 / sqrt(s->rate) : one_sided ? sqrt(0.5) : 1;
 }
 

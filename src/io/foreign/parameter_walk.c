@@ -129,15 +129,16 @@ static void require_walk(imki_parameters *p, imki_walk walk, const char *format,
                          const imk_triad *triad)
 {
     char field[64], found[96], expected[160];
-    if (!triad->present || walk < IMKI_WALK_WANTED || imki_any(triad->noise.random_walk.value) ||
-        !imki_any(triad->noise.white.value))
+    const double *k = triad->noise.random_walk.value;
+    const bool enough = walk == IMKI_WALK_OF_EACH ? k[0] > 0 && k[1] > 0 && k[2] > 0 : imki_any(k);
+    if (!triad->present || walk < IMKI_WALK_WANTED || enough || !imki_any(triad->noise.white.value))
         return;
     snprintf(field, sizeof field, "%s.%s", imki_kind_names[kind], walk_path(kind));
-    snprintf(found, sizeof found, "\"%s\" (K) is not in the model, and %s needs it",
-             strrchr(field, '.') + 1, format);
+    snprintf(found, sizeof found, "\"%s\" (K) is not in the model%s, and %s needs it",
+             strrchr(field, '.') + 1, imki_any(k) ? " on all axes" : "", format);
     if (advise(p, triad, kind, expected, sizeof expected))
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, field, found, expected);
-    else if (walk == IMKI_WALK_NEEDED)
+    else if (walk >= IMKI_WALK_NEEDED)
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, field, found,
                               "nothing in the model stands for it: add it to the model, or "
                               "identify it from a longer log");

@@ -330,7 +330,7 @@ static void test_vins(void **state)
     (void)state;
     imk_parameter_settings settings = imk_parameter_default();
     CHECK_STATUS(read(sample("vins.yaml")), IMK_ERROR_KEY_MISSING);
-    check_says("add --rate 200Hz");
+    check_says("add --rate RATE");
     check_says("--density two-sided");
     settings.rate = 400;
     CHECK_OK(read_with(&settings, sample("vins.yaml")));
@@ -405,7 +405,7 @@ static const struct refusal {
      "</noise></x></angular_velocity></imu></sensor>",
      IMK_ERROR_KEY_MISSING,
      "f:1:74: stddev: \"stddev\" is per sample, and update_rate is missing; "
-     "add --rate 200Hz (samples per second)"},
+     "add --rate RATE (samples per second, as 200Hz)"},
     {"<sensor name='a' type='imu'><imu><angular_velocity><x><noise><stddev>${s}</stddev></noise>"
      "</x></angular_velocity></imu></sensor>",
      IMK_ERROR_SYNTAX, "expand the macros first"},
@@ -536,7 +536,7 @@ static void test_lost(void **state)
     settings.format = IMK_PARAMETERS_GAZEBO;
     CHECK_STATUS(imk_parameters_print(NULL, &settings, &full, &text, &size, NULL, &error),
                  IMK_ERROR_KEY_MISSING);
-    assert_string_equal(error.expected, "add --rate 200Hz (samples per second)");
+    assert_string_equal(error.expected, "add --rate RATE (samples per second, as 200Hz)");
     full.accel.axis_count = 2;
     CHECK_STATUS(imk_parameters_print(NULL, &settings, &full, &text, &size, NULL, &error),
                  IMK_ERROR_UNSUPPORTED);

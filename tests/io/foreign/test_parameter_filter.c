@@ -140,7 +140,7 @@ static void test_refusals(void **state)
     CHECK_STATUS(imk_parameters_print("x.yaml", &settings, &model, &text, &size, &notes, &error),
                  IMK_ERROR_KEY_MISSING);
     imk_error_text(&error, "m", message, sizeof message);
-    check_line(message, "add --rate 200Hz");
+    check_line(message, "add --rate RATE");
     static const struct {
         const char *text, *says;
     } wrong[] = {{"imukit_filter: 1\ngyro: 3\n", "a mapping with white_noise"},

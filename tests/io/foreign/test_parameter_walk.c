@@ -151,8 +151,17 @@ static void test_missing(void **state)
     /* A simulator's file may have no walk; one without white noise is about other things. */
     imk_parameter_settings settings = imk_parameter_default();
     fill_model();
-    settings.format = IMK_PARAMETERS_AIRSIM;
+    settings.format = IMK_PARAMETERS_NAVEGO;
     CHECK_OK(convert(&settings));
+    /* GTSAM has a covariance of each axis, others one number. */
+    settings.format = IMK_PARAMETERS_OPENVINS;
+    model.gyro.noise.random_walk.value[1] = 1e-5;
+    memcpy(model.accel.noise.random_walk.value, (double[3]){1e-4, 1e-4, 1e-4}, 3 * sizeof(double));
+    CHECK_OK(convert(&settings));
+    settings.format = IMK_PARAMETERS_GTSAM;
+    CHECK_STATUS(convert(&settings), IMK_ERROR_KEY_MISSING);
+    assert_string_equal(error.field, "gyro.noise.rate_random_walk");
+    assert_non_null(strstr(error.found, "is not in the model on all axes"));
     settings.format = IMK_PARAMETERS_KALIBR;
     imk_model_default(&model);
     model.accel.scale_factor.fixed.value[0] = 0.01;
