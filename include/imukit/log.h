@@ -29,6 +29,8 @@ typedef struct imk_log_format {
     const char *companion; /**< ending added for the file of names and units that comes with each
                               file, such as ".columns" for FILE.npy.columns; NULL: there is none */
     bool written;          /**< the format can be written, too */
+    bool keeps_epoch;      /**< its stamps are whole nanoseconds, since 1970 or whatever else: see
+                              imk_log_write_origin() */
 } imk_log_format;
 
 /** Format `index`, CSV first; NULL beyond the last. In the order in which contents are compared
@@ -247,6 +249,11 @@ IMK_API imk_status imk_log_create(const char *path, size_t column_count,
                                   const imk_log_column *columns, imk_log_precision precision,
                                   const int *decimals, uint64_t row_count, imk_log_writer **writer,
                                   imk_error *error);
+/** State the time from which those of the rows count: time_origin_nanoseconds of the
+ *  imk_log_findings of the log that they were read from. It is added to the stamps of formats that
+ *  keep it (imk_log_format.keeps_epoch), and to the times of a text in whole nanoseconds. To be
+ *  called before the first row. */
+IMK_API void imk_log_write_origin(imk_log_writer *writer, int64_t nanoseconds);
 /** Write comment lines (one per line of the text) before the header of a CSV; a .npy leaves them
  *  out. @return IMK_ERROR_ARGUMENT after the first row */
 IMK_API imk_status imk_log_comment(imk_log_writer *writer, const char *text);
@@ -279,6 +286,7 @@ typedef struct imk_log_sink {
     /** Write as imu0/data.csv of the EuRoC data set: its header, times in whole nanoseconds. The
      * columns must be time, gyro_x … gyro_z, accel_x … accel_z; `fixed` does not hold. */
     bool euroc;
+    int64_t origin;         /**< see imk_log_write_origin() [ns] */
     imk_log_writer *writer; /**< its own */
     imk_record_source labels;
 } imk_log_sink;

@@ -82,6 +82,7 @@ typedef struct imk_log_findings {
     /** [s] subtracted from the times: the first one if beyond 1e6 s (clocks that count from an
      *  epoch), so that microseconds keep their resolution; else 0. */
     double time_origin;
+    int64_t time_origin_nanoseconds; /**< the same, exact where the log has whole numbers */
     /** Steps that evenly spaced samples do not have: below 0.4 intervals, or of 1.35 to 4 and more
      *  than 0.25 off a whole number; steps below 0.25 intervals. */
     size_t uneven, bursts;

@@ -190,6 +190,31 @@ static void test_refused(void **state)
     assert_int_equal(sweep(), 4);
 }
 
+/* Stamps keep their epoch where the format has stamps, to the nanosecond; elsewhere it is told that
+ * they do not. */
+static void test_epoch(void **state)
+{
+    (void)state;
+    static const char *const formats[] = {"csv", "bag", "mcap", "db3"};
+    put("data.csv", "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
+                    "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n"
+                    "1403636579758555393,1,2,3,4,5,6\n1403636579763555393,2,3,4,5,6,7\n"
+                    "1403636579768555396,3,4,5,6,7,8\n");
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
+        char line[200];
+        snprintf(line, sizeof line,
+                 "$I convert data.csv a.%s %s && $I convert a.%s b.csv --to euroc && "
+                 "cmp data.csv b.csv",
+                 formats[i], i == 0 ? "--to euroc" : "", formats[i]);
+        assert_int_equal(run(line), 0);
+        assert_string_equal(err, "");
+    }
+    assert_int_equal(run("$I convert data.csv c.csv"), 0);
+    check_contains(err, "the times of data.csv count from 1403636579.759 s, which is 0 in c.csv",
+                   "note");
+    assert_int_equal(sweep(), 7);
+}
+
 /* --sensor chooses among several; where there is one only it was meant for another file. */
 static void test_sensor_of_one(void **state)
 {
@@ -275,10 +300,11 @@ static void test_json(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_to_model),     cmocka_unit_test(test_from_model),
-        cmocka_unit_test(test_refused),      cmocka_unit_test(test_round_trip),
-        cmocka_unit_test(test_json),         cmocka_unit_test(test_sensor_of_one),
-        cmocka_unit_test(test_missing_walk), cmocka_unit_test(test_walk_options),
+        cmocka_unit_test(test_to_model),      cmocka_unit_test(test_from_model),
+        cmocka_unit_test(test_refused),       cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_json),          cmocka_unit_test(test_epoch),
+        cmocka_unit_test(test_sensor_of_one), cmocka_unit_test(test_missing_walk),
+        cmocka_unit_test(test_walk_options),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -14,7 +14,9 @@
 
 #include "imukit/decimal.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,6 +43,7 @@ void imki_column_format_set(imki_column_format *column, double scale, double off
     column->scale = scale;
     column->offset = offset;
     column->as_is = scale == 1.0 && offset == 0.0;
+    column->origin = 0;
     column->fixed = imki_fixed_decimal_of(decimals);
     double spacing =
         0x1p-52; /* of the doubles at the exponent of entry i, which begins with 2^-64 */
@@ -184,17 +187,19 @@ static char *put_label(const char *text, char *at)
     return at;
 }
 
-/* Any row; the two above are for logs without texts, which are nearly all. */
+/* Any row; the two above are for logs without texts and origins, which are nearly all. */
 static char *format_labelled_row(const imki_row_format *format, tile numbers, size_t row, char *at)
 {
     for (size_t i = 0; i < format->column_count; i++) {
         const imki_column_format *column = &format->column[i];
         const double number = numbers[i][row];
-        const char *label = column->label && number >= 0.0 && number < 0x1p53
+        const char *label = column->label && format->label && number >= 0.0 && number < 0x1p53
                                 ? format->label(format->label_context, (size_t)number)
                                 : NULL;
         if (label)
             at = put_label(label, at);
+        else if (column->origin != 0 && fabs(number) < 0x1p53)
+            at += sprintf(at, "%" PRId64, column->origin + (int64_t)llround(number));
         else if (format->precision == IMK_LOG_FIXED)
             at = imki_fixed_decimal_write(&column->fixed, number, at);
         else
@@ -210,7 +215,7 @@ void imki_log_format_text(const imki_row_format *format, const double *const *co
                           size_t count, imki_log_bytes *bytes)
 {
     const size_t longest = format->column_count * IMK_DECIMAL_SIZE; /* one row, commas included */
-    row_function *format_row = format->label                        ? format_labelled_row
+    row_function *format_row = format->label || format->has_origin  ? format_labelled_row
                                : format->precision == IMK_LOG_FIXED ? format_fixed_row
                                                                     : format_shortest_row;
     tile numbers;

@@ -17,6 +17,7 @@ typedef struct imki_column_format {
      * scale, so that numbers of k decimals are spaced about as the SI doubles; -1 outside 0 … 22.
      */
     int8_t fitting_decimals[IMKI_EXPONENTS];
+    int64_t origin; /* added to whole numbers; 0: none */
 } imki_column_format;
 
 typedef struct imki_row_format {
@@ -24,6 +25,7 @@ typedef struct imki_row_format {
     imk_log_precision precision;
     imk_log_label_lookup label; /* NULL: the indices are written */
     void *label_context;
+    bool has_origin; /* a column has one */
     imki_column_format column[IMK_LOG_COLUMNS_MAX];
 } imki_row_format;
 

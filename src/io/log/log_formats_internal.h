@@ -11,24 +11,24 @@
 /* name of the functions below (imki_log_csv, …), then the members of imk_log_format. The first is
  * that of texts, of standard output and of names with any other ending. */
 #define IMKI_LOG_FORMATS(ROW)                                                                      \
-    ROW(csv, "csv", "CSV", ".csv .txt", NULL, NULL, true)                                          \
-    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true)                                 \
-    ROW(npz, "npz", ".npz", ".npz", NULL, NULL, true)                                              \
-    ROW(mat, "mat", ".mat", ".mat", NULL, NULL, true)                                              \
-    ROW(hdf5, "hdf5", "HDF5", ".h5 .hdf5", "\x89HDF\r\n\x1a\n", NULL, true)                        \
-    ROW(bag, "bag", "ROS 1 bag", ".bag", "#ROSBAG V2", NULL, true)                                 \
+    ROW(csv, "csv", "CSV", ".csv .txt", NULL, NULL, true, false)                                   \
+    ROW(npy, "npy", ".npy", ".npy", "\x93NUMPY", ".columns", true, false)                          \
+    ROW(npz, "npz", ".npz", ".npz", NULL, NULL, true, false)                                       \
+    ROW(mat, "mat", ".mat", ".mat", NULL, NULL, true, false)                                       \
+    ROW(hdf5, "hdf5", "HDF5", ".h5 .hdf5", "\x89HDF\r\n\x1a\n", NULL, true, false)                 \
+    ROW(bag, "bag", "ROS 1 bag", ".bag", "#ROSBAG V2", NULL, true, true)                           \
     ROW(mcap, "mcap", "MCAP", ".mcap",                                                             \
         "\x89"                                                                                     \
         "MCAP0\r\n",                                                                               \
-        NULL, true)                                                                                \
-    ROW(rosbag2, "rosbag2", "rosbag2", ".db3", "SQLite format 3", NULL, true)                      \
-    ROW(ulog, "ulog", "PX4 ULog", ".ulg", "ULog", NULL, false)                                     \
-    ROW(dataflash, "dataflash", "ArduPilot .bin", ".bin .BIN", "\xA3\x95", NULL, false)            \
-    ROW(novatel, "novatel", "NovAtel", "", NULL, NULL, false)                                      \
-    ROW(sbg, "sbg", "sbgECom", "", NULL, NULL, false)                                              \
-    ROW(ubx, "ubx", "UBX", ".ubx", NULL, NULL, false)                                              \
-    ROW(vectornav, "vectornav", "VectorNav", "", NULL, NULL, false)                                \
-    ROW(described, "binary", "records described by --binary", "", NULL, NULL, false)
+        NULL, true, true)                                                                          \
+    ROW(rosbag2, "rosbag2", "rosbag2", ".db3", "SQLite format 3", NULL, true, true)                \
+    ROW(ulog, "ulog", "PX4 ULog", ".ulg", "ULog", NULL, false, false)                              \
+    ROW(dataflash, "dataflash", "ArduPilot .bin", ".bin .BIN", "\xA3\x95", NULL, false, false)     \
+    ROW(novatel, "novatel", "NovAtel", "", NULL, NULL, false, false)                               \
+    ROW(sbg, "sbg", "sbgECom", "", NULL, NULL, false, false)                                       \
+    ROW(ubx, "ubx", "UBX", ".ubx", NULL, NULL, false, false)                                       \
+    ROW(vectornav, "vectornav", "VectorNav", "", NULL, NULL, false, false)                         \
+    ROW(described, "binary", "records described by --binary", "", NULL, NULL, false, false)
 
 /* What a format sees of a log that is written. */
 typedef struct imki_log_output {
@@ -37,6 +37,7 @@ typedef struct imki_log_output {
     imk_log_column column[IMK_LOG_COLUMNS_MAX];
     imki_row_format rows;
     uint64_t written, announced; /* rows; announced 0: not known */
+    int64_t origin;              /* [ns] of the times */
     void *state;                 /* of the format */
 } imki_log_output;
 

@@ -453,9 +453,18 @@ imk_status imk_log_seek(imk_log_reader *reader, double fraction, imk_error *erro
     return IMK_OK;
 }
 
+/* [ns] subtracted from the times */
+static int64_t origin_of(const imk_log_reader *reader)
+{
+    const int column = reader->layout.time_column;
+    const double more = column < 0 ? 0 : reader->time_origin * reader->layout.factor[column];
+    return fabs(more) < 9e9 ? reader->origin_nanoseconds + llround(more * 1e9) : 0;
+}
+
 imk_log_findings imk_log_findings_get(const imk_log_reader *reader)
 {
     imk_log_findings found = imki_record_times_findings(&reader->times);
+    found.time_origin_nanoseconds = origin_of(reader);
     found.rows = reader->rows;
     found.not_finite = reader->not_finite;
     found.first_not_finite = reader->first_not_finite;

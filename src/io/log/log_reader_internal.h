@@ -138,8 +138,9 @@ struct imk_log_reader {
     /* The sensors in the log, those that are readable first. */
     imk_log_stream *streams;
     size_t stream_count, stream_room;
-    size_t stream;        /* the one that is read */
-    double origin_before; /* [s] that the format itself subtracted from the times */
+    size_t stream;              /* the one that is read */
+    double origin_before;       /* [s] that the format itself subtracted from the times */
+    int64_t origin_nanoseconds; /* the same */
     /* Met by the format: rows, messages or blocks that are left out; the end within one. */
     size_t damaged, first_damaged;
     size_t damaged_line, damaged_column; /* of the first, in a text */
@@ -206,6 +207,8 @@ imk_status imki_log_stream_choose(imk_log_reader *reader, const char *nothing, s
 imk_status imki_log_layout_of(imk_log_reader *reader, size_t count, const char *const *names,
                               imk_error *error);
 
+/* Ticks of a clock in nanoseconds, exact where a tick is some of them; 0: beyond 292 years. */
+int64_t imki_log_nanoseconds(int64_t ticks, int64_t per_second);
 /* Whole stamps of a clock: what to subtract from all before they become seconds, by the rule that
  * times beyond 1e6 s count from the first one, without loss of digits.
  * @param per_second  stamps in a second */

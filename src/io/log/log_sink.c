@@ -65,6 +65,18 @@ static void take_out_brackets(size_t count, imk_log_column *columns)
     }
 }
 
+static imk_status create(imk_log_sink *s, size_t count, const imk_log_column *columns,
+                         imk_log_precision precision, const int *decimals, uint64_t rows,
+                         imk_error *error)
+{
+    const imk_status status =
+        imk_log_create(s->path, count, columns, precision, decimals, rows, &s->writer, error);
+    const bool kept = s->euroc || imk_log_format_of(s->path)->keeps_epoch;
+    if (status == IMK_OK && kept)
+        imk_log_write_origin(s->writer, s->origin);
+    return status;
+}
+
 static imk_status begin(void *context, size_t column_count, const imk_log_column *columns,
                         const int *decimals, uint64_t rows, imk_error *error)
 {
@@ -76,9 +88,9 @@ static imk_status begin(void *context, size_t column_count, const imk_log_column
                              "a name that ends in .csv");
     if (s->euroc) {
         const imk_status status = rename_columns(column_count, columns, renamed, error);
-        return status == IMK_OK ? imk_log_create(s->path, column_count, renamed, IMK_LOG_SHORTEST,
-                                                 NULL, rows, &s->writer, error)
-                                : status;
+        return status == IMK_OK
+                   ? create(s, column_count, renamed, IMK_LOG_SHORTEST, NULL, rows, error)
+                   : status;
     }
     if (column_count > IMK_LOG_COLUMNS_MAX)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "column_count", "", "1 to 64 columns");
@@ -86,9 +98,8 @@ static imk_status begin(void *context, size_t column_count, const imk_log_column
     take_out_brackets(column_count, renamed);
     for (size_t c = 0; c < column_count; c++)
         count[c] = decimals[c] >= 0 ? decimals[c] : s->decimals;
-    return imk_log_create(s->path, column_count, renamed,
-                          s->fixed ? IMK_LOG_FIXED : IMK_LOG_SHORTEST, s->fixed ? count : NULL,
-                          rows, &s->writer, error);
+    return create(s, column_count, renamed, s->fixed ? IMK_LOG_FIXED : IMK_LOG_SHORTEST,
+                  s->fixed ? count : NULL, rows, error);
 }
 
 /* Times in whole nanoseconds, which their unit then writes as whole numbers. */

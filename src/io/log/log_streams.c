@@ -146,12 +146,23 @@ imk_status imki_log_layout_of(imk_log_reader *reader, size_t count, const char *
     return imki_log_layout_make(cells, count, &reader->settings, &reader->layout, error);
 }
 
+int64_t imki_log_nanoseconds(int64_t ticks, int64_t per_second)
+{
+    enum { BILLION = 1000000000 };
+    const int64_t each = per_second > 0 && BILLION % per_second == 0 ? BILLION / per_second : 0;
+    if (each > 0 && ticks < INT64_MAX / each && ticks > INT64_MIN / each)
+        return ticks * each;
+    const double nanoseconds = (double)ticks / (double)per_second * BILLION;
+    return fabs(nanoseconds) < 9.2e18 ? llround(nanoseconds) : 0;
+}
+
 int64_t imki_log_stamp_origin(imk_log_reader *reader, int64_t first, int64_t per_second)
 {
     const double seconds = (double)first / (double)per_second;
     if (fabs(seconds) <= 1e6)
         return 0;
     reader->origin_before = seconds;
+    reader->origin_nanoseconds = imki_log_nanoseconds(first, per_second);
     return first;
 }
 

@@ -150,6 +150,18 @@ imk_status imk_log_comment(imk_log_writer *writer, const char *text)
     return IMK_OK;
 }
 
+void imk_log_write_origin(imk_log_writer *writer, int64_t nanoseconds)
+{
+    const imk_unit nanosecond = imk_unit_of("ns");
+    writer->log.origin = nanoseconds;
+    for (size_t i = 0; i < writer->log.rows.column_count; i++)
+        if (writer->log.column[i].quantity == IMK_QUANTITY_TIME &&
+            writer->log.column[i].unit.scale == nanosecond.scale && nanoseconds != 0) {
+            writer->log.rows.column[i].origin = nanoseconds;
+            writer->log.rows.has_origin = true;
+        }
+}
+
 void imk_log_write_labels(imk_log_writer *writer, imk_log_label_lookup lookup, void *context)
 {
     bool any = false;

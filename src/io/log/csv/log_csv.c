@@ -146,8 +146,11 @@ static void find_stamps(imk_log_reader *reader, imki_csv *csv)
         if (!layout->stamps.exact && imki_log_piece_is_number(piece, &value))
             break;
     }
-    if (layout->stamps.exact)
-        reader->origin_before = imki_log_stamps_origin(&layout->stamps) * scale;
+    if (!layout->stamps.exact)
+        return;
+    reader->origin_before = imki_log_stamps_origin(&layout->stamps) * scale;
+    reader->origin_nanoseconds =
+        imki_log_nanoseconds(layout->stamps.origin, llround(layout->stamps.per_unit / scale));
 }
 
 /* Look at the first row, and the second where the first interval is needed. What is wrong in them

@@ -100,6 +100,7 @@ static void find_origin(imk_log_reader *reader, const unsigned char *record)
     if (fabs(seconds) > 1e6) {
         d->origin = ticks;
         reader->origin_before = seconds;
+        reader->origin_nanoseconds = fabs(seconds) < 9.2e9 ? llround(seconds * 1e9) : 0;
     }
 }
 

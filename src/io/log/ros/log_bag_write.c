@@ -218,7 +218,7 @@ imk_status imki_bag_write(imki_log_output *log, const char *bytes, size_t size, 
     imk_status status = IMK_OK;
     for (size_t i = 0; i < rows && status == IMK_OK; i++) {
         imki_imu imu;
-        if (!imki_ros_writer_take(&bag->writer, bytes + i * row_size, &imu))
+        if (!imki_ros_writer_take(&bag->writer, log->origin, bytes + i * row_size, &imu))
             return IMK_ERROR_RANGE;
         if (!bag->connected)
             put_connection(&bag->chunk);

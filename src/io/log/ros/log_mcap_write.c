@@ -281,7 +281,7 @@ imk_status imki_mcap_write(imki_log_output *log, const char *bytes, size_t size,
     imk_status status = IMK_OK;
     for (size_t i = 0; i < rows && status == IMK_OK; i++) {
         imki_imu imu;
-        if (!imki_ros_writer_take(&mcap->writer, bytes + i * row_size, &imu))
+        if (!imki_ros_writer_take(&mcap->writer, log->origin, bytes + i * row_size, &imu))
             return IMK_ERROR_RANGE;
         if (!mcap->defined) {
             put_schema(&mcap->chunk);

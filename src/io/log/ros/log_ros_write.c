@@ -82,21 +82,22 @@ imk_status imki_ros_writer_start(imki_ros_writer *writer, imki_log_output *log, 
     return IMK_OK;
 }
 
-bool imki_ros_writer_take(imki_ros_writer *writer, const char *row, imki_imu *imu)
+bool imki_ros_writer_take(imki_ros_writer *writer, int64_t origin, const char *row, imki_imu *imu)
 {
     const double most = 2147483647.0; /* the seconds of ROS 2 are 32 bits with a sign */
     const uint8_t *cells = (const uint8_t *)row;
     const double time = imki_get_f64(cells + 8 * writer->time);
     if (writer->refused_row > 0)
         return false;
-    if (!(time >= 0.0 && time <= most)) {
+    const double stamp = time + (double)origin * 1e-9;
+    if (!(stamp >= 0.0 && stamp <= most)) {
         writer->refused_row = writer->rows + 1;
-        writer->refused_time = time;
+        writer->refused_time = stamp;
         return false;
     }
-    *imu =
-        (imki_imu){.stamp = (int64_t)floor(time) * 1000000000 + llround((time - floor(time)) * 1e9),
-                   .has = {writer->has[0], writer->has[1]}};
+    *imu = (imki_imu){.stamp = origin + (int64_t)floor(time) * 1000000000 +
+                               llround((time - floor(time)) * 1e9),
+                      .has = {writer->has[0], writer->has[1]}};
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 3 && writer->has[k]; i++)
             imu->value[k][i] = imki_get_f64(cells + 8 * writer->column[k][i]);

@@ -28,7 +28,7 @@ typedef struct imki_ros_writer {
 imk_status imki_ros_writer_start(imki_ros_writer *writer, imki_log_output *log, const char *path,
                                  imk_error *error);
 /* The next row. @return false: its time is no stamp, which imki_ros_writer_check() tells */
-bool imki_ros_writer_take(imki_ros_writer *writer, const char *row, imki_imu *imu);
+bool imki_ros_writer_take(imki_ros_writer *writer, int64_t origin, const char *row, imki_imu *imu);
 /* @return IMK_ERROR_RANGE if a row was refused */
 imk_status imki_ros_writer_check(const imki_ros_writer *writer, imk_error *error);
 

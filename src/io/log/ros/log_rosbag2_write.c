@@ -72,7 +72,7 @@ imk_status imki_rosbag2_write(imki_log_output *log, const char *bytes, size_t si
     for (size_t i = 0; i < rows; i++) {
         uint8_t data[IMKI_ROS_IMU_MAX];
         imki_imu imu;
-        if (!imki_ros_writer_take(&db->writer, bytes + i * row_size, &imu))
+        if (!imki_ros_writer_take(&db->writer, log->origin, bytes + i * row_size, &imu))
             return IMK_ERROR_RANGE;
         const size_t length = imki_ros_imu_write(IMKI_ROS_CDR, &imu, 0, data);
         sqlite3_bind_int64(db->insert, 1, imu.stamp);
