@@ -325,7 +325,7 @@ static void show_unstated(const imk_info_log *info, imk_result *result)
             axes++;
         }
     }
-    imk_result_line(result, "Whether the sensor rests is not known without the units.");
+    imk_result_line(result, "Whether the sensor rests is not known: units or times are missing.");
     if (axes == 3 && isfinite(square))
         imk_result_line(result,
                         "The mean of the accelerometers has the length %.4g. At rest it is 9.81 in "
@@ -389,8 +389,13 @@ static void show_motion(const imk_info_log *info, imk_result *result)
                         info->attitudes, info->whole ? "" : " or more", 100 * info->resting, where);
         break;
     case IMK_INFO_MOVES:
-        imk_result_line(result, "The sensor is moved: it rests %.0f %% of the time%s.",
-                        100 * info->resting, where);
+        if (info->resting < 0.01)
+            imk_result_line(result, "The sensor is moved%s.", where);
+        else
+            imk_result_line(result,
+                            "The sensor rests %.0f %% of the time%s, and is touched or moved in "
+                            "the rest of it.",
+                            fmin(99, floor(100 * info->resting)), where);
         break;
     case IMK_INFO_UNKNOWN:
         imk_result_line(result, "Whether the sensor rests is not known: there are no gyros and "
