@@ -36,19 +36,30 @@ static bool is_index(imki_log_piece inside)
     return inside.end - inside.begin == 1 && *inside.begin >= '0' && *inside.begin <= '9';
 }
 
+/* The bracket that the one at the end closes; NULL: none. */
+static const char *opening(imki_log_piece name)
+{
+    const char close = name.end[-1], open = close == ']' ? '[' : '(';
+    size_t depth = 0;
+    for (const char *p = name.end; p-- > name.begin;) {
+        depth += *p == close;
+        if (*p == open && --depth == 0)
+            return p;
+    }
+    return NULL;
+}
+
 void imki_log_unit_split(imki_log_piece *name, imki_log_piece *unit)
 {
     trim(name);
     *unit = (imki_log_piece){name->end, name->end};
     if (name->begin == name->end || (name->end[-1] != ']' && name->end[-1] != ')'))
         return;
-    const char open = name->end[-1] == ']' ? '[' : '(';
-    for (const char *p = name->begin; p < name->end; p++)
-        if (*p == open && !is_index((imki_log_piece){p + 1, name->end - 1})) {
-            *unit = (imki_log_piece){p + 1, name->end - 1};
-            name->end = p;
-            break;
-        }
+    const char *open = opening(*name);
+    if (!open || is_index((imki_log_piece){open + 1, name->end - 1}))
+        return;
+    *unit = (imki_log_piece){open + 1, name->end - 1};
+    name->end = open;
     trim(name);
     trim(unit);
 }

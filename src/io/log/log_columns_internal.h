@@ -17,7 +17,7 @@ typedef struct imki_log_cell {
 
 enum { IMKI_LOG_NAME_SIZE = 128 };
 
-/* "gyro_x [deg/s]": divide at the first bracket that closes at the end. */
+/* "gyro_x [deg/s]", "gyro[0] [deg/s]": divide at the bracket that is closed at the end. */
 void imki_log_unit_split(imki_log_piece *name, imki_log_piece *unit);
 
 void imki_log_piece_copy(char *target, size_t size, imki_log_piece piece);

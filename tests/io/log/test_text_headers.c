@@ -116,6 +116,69 @@ static void seconds_alone_are_no_time_beside_the_rest(void **state)
     CHECK_CLOSE(t.data[0][0], 5.5, 0);
 }
 
+/* ------------------------------------------------------------------------- indices in brackets */
+
+static void an_index_stands_before_a_unit(void **state)
+{
+    (void)state;
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 100;
+    read_text("gyro[0] [deg/s],gyro[1] [deg/s],gyro[2] [deg/s],acc[0] (g),acc(1)(g),mag(2) [uT]\n"
+              "1,2,3,4,5,6\n",
+              &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_string_equal(t.column[0].name, "gyro_x");
+    assert_string_equal(t.column[2].name, "gyro_z");
+    assert_string_equal(t.column[2].unit.text, "deg/s");
+    assert_string_equal(t.column[4].name, "accel_y");
+    assert_string_equal(t.column[4].unit.text, "g");
+    assert_string_equal(t.column[5].name, "mag_z");
+    settings.map = "gyro_z=gyro[0],gyro_x=gyro[2] [deg/s]";
+    read_text("gyro[0] [deg/s],gyro[1] [deg/s],gyro[2] [deg/s]\n1,2,3\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_string_equal(t.column[0].name, "gyro_z");
+    assert_string_equal(t.column[1].name, "gyro_x");
+    settings.map = NULL;
+    settings.gyro_unit = "rad/s";
+    read_text("gyro[0],gyro[1],gyro(2)\n1,2,3\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_string_equal(t.column[1].name, "gyro_y");
+    assert_int_equal(t.column[2].axis, 2);
+    /* A unit in brackets of its own. */
+    settings.gyro_unit = NULL;
+    read_text("gyro_x [(deg)/(s)]\n180\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    CHECK_CLOSE(t.data[0][0], 3.14159265358979, 1e-14); /* 180 deg/s in rad/s */
+}
+
+/* The header that ulog2csv writes for sensor_combined: microseconds, rad/s and m/s^2 by the
+ * definition of the message [ULOG]. */
+static void columns_of_ulog2csv_have_the_units_of_the_message(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "timestamp,gyro_rad[0],gyro_rad[1],gyro_rad[2],gyro_integral_dt,accelerometer_m_s2[0],"
+        "accelerometer_m_s2[1],accelerometer_m_s2[2]\n1500000,1,2,3,10000,4,5,6\n";
+    imk_log_settings settings = imk_log_default();
+    read_text(text, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.columns, 8);
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_TIME);
+    assert_string_equal(t.column[3].name, "gyro_z");
+    assert_string_equal(t.column[7].name, "accel_z");
+    CHECK_CLOSE(t.data[0][0], 1.5, 0);
+    CHECK_CLOSE(t.data[3][0], 3, 0);
+    CHECK_CLOSE(t.data[7][0], 6, 0);
+    settings.map = "time=timestamp,gyro_x=gyro_rad[1]";
+    read_text(text, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.columns, 2);
+    CHECK_CLOSE(t.data[1][0], 2, 0);
+    settings.map = "time=timestamp,gyro_x=gyro_rad[1] [deg/s]";
+    read_text(text, &settings);
+    check_says(IMK_ERROR_CONFLICT, "[deg/s] does not agree with the file");
+}
+
 /* ------------------------------------------------------------------------- axes counted from 1 */
 
 static void check_axes(const char *header, int first, int second, int third)
@@ -367,6 +430,8 @@ int main(void)
         cmocka_unit_test(times_in_two_columns_are_joined),
         cmocka_unit_test(a_rest_of_more_than_a_second_is_no_time),
         cmocka_unit_test(seconds_alone_are_no_time_beside_the_rest),
+        cmocka_unit_test(an_index_stands_before_a_unit),
+        cmocka_unit_test(columns_of_ulog2csv_have_the_units_of_the_message),
         cmocka_unit_test(axes_may_be_counted_from_one),
         cmocka_unit_test(units_must_agree_with_the_end_of_the_name),
         cmocka_unit_test(times_of_another_unit_are_refused),
