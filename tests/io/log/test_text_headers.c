@@ -77,6 +77,22 @@ static void times_in_two_columns_are_joined(void **state)
         CHECK_CLOSE(t.data[0][1], 0.01, 0);
         CHECK_CLOSE(t.data[0][2], 1.000000001, 0);
     }
+    static const char *const more[][3] = {{"seconds", "milliseconds", "0"},
+                                          {"sec", "msec", "0"},
+                                          {"t_s", "t_ms", "0"},
+                                          {"time_sec", "time_usec", "0000"},
+                                          {"t_s", "t_us", "0000"},
+                                          {"time.s", "time.us", "0000"},
+                                          {"timestamp.sec", "timestamp.nsec", "0000000"}};
+    for (size_t k = 0; k < sizeof more / sizeof more[0]; k++) {
+        snprintf(text, sizeof text, "%s,%s,gyro_x [rad/s]\n7,25%s,1\n8,5%s,2\n", more[k][0],
+                 more[k][1], more[k][2], more[k][2]);
+        read_text(text, &settings);
+        assert_int_equal(t.status, IMK_OK);
+        assert_int_equal(t.columns, 2);
+        CHECK_CLOSE(t.data[0][0], 7.25, 0); /* 250 ms, 250000 us */
+        CHECK_CLOSE(t.data[0][1], 8.05, 0);
+    }
     read_text("sec,usec,gyro_x [rad/s]\n12,999999,1\n13,9999,2\n", &settings);
     CHECK_CLOSE(t.data[0][0], 12.999999, 0); /* a clock without epoch stays as it is */
     CHECK_CLOSE(t.data[0][1], 13.009999, 0);
@@ -109,6 +125,13 @@ static void seconds_alone_are_no_time_beside_the_rest(void **state)
     settings.map = NULL;
     read_text("header.stamp.secs,header.stamp.nsecs,gyro_x [rad/s]\n5.5,500000000,1\n", &settings);
     check_says(IMK_ERROR_COLUMN, "header.stamp.secs is only the seconds of the time");
+    read_text("seconds,milliseconds,gyro_x [rad/s]\n5,5000,1\n5,5010,1\n", &settings);
+    check_says(IMK_ERROR_COLUMN, "seconds is only the seconds of the time, and milliseconds");
+    read_text("time_s,time_ms,gyro_x [rad/s]\n5,5000,1\n5,5010,1\n", &settings);
+    check_says(IMK_ERROR_COLUMN, "twice, as time_s and time_ms; say which columns to read");
+    /* Those of a clock begin again with each minute. */
+    read_text("min,sec,msec,gyro_x [rad/s]\n5,59,0,1\n6,0,0,1\n", &settings);
+    check_says(IMK_ERROR_RATE_MISSING, "the log has no time column");
     /* The whole time stands beside them. */
     read_text("time [s],header.stamp.secs,header.stamp.nsecs,gyro_x [rad/s]\n5.5,5,5e8,1\n",
               &settings);
