@@ -64,52 +64,6 @@ void imki_log_unit_split(imki_log_piece *name, imki_log_piece *unit)
     trim(unit);
 }
 
-imki_log_piece imki_log_unit_of_name(imki_log_piece name)
-{
-    char text[48];
-    imki_log_piece_copy(text, sizeof text, name);
-    const char *unit = imki_log_name_of(text).unit;
-    return unit ? (imki_log_piece){unit, unit + strlen(unit)}
-                : (imki_log_piece){name.end, name.end};
-}
-
-const char *imki_log_unit_setting(imk_quantity quantity, const imk_log_settings *settings)
-{
-    switch (quantity) {
-    case IMK_QUANTITY_TIME:
-        return settings->time_unit;
-    case IMK_QUANTITY_ANGULAR_RATE:
-        return settings->gyro_unit;
-    case IMK_QUANTITY_SPECIFIC_FORCE:
-        return settings->accel_unit;
-    case IMK_QUANTITY_TEMPERATURE:
-        return settings->temperature_unit;
-    case IMK_QUANTITY_MAGNETIC:
-    case IMK_QUANTITY_OTHER:
-        break;
-    }
-    return NULL;
-}
-
-bool imki_log_unit_fits(const imki_log_kind *kind, const imk_unit *unit)
-{
-    return imk_dimension_equal(unit->dimension, imk_unit_of(kind->unit).dimension) ||
-           (kind->quantity != IMK_QUANTITY_TIME &&
-            imk_dimension_equal(unit->dimension, imk_unit_of("count").dimension));
-}
-
-imk_status imki_log_unit_refuse(const imki_log_kind *kind, const imk_unit *unit, const char *field,
-                                imk_error *error)
-{
-    const imk_dimension due = imk_unit_of(kind->unit).dimension;
-    char found[96], expected[160];
-    snprintf(found, sizeof found, "\"%.47s\" is %.40s", unit->text,
-             imk_dimension_name(unit->dimension));
-    snprintf(expected, sizeof expected, "%.60s, such as %.80s", imk_dimension_name(due),
-             imk_dimension_examples(due));
-    return imk_error_set(error, IMK_ERROR_DIMENSION, field, found, expected);
-}
-
 /* A column without meaning here: in SI if its unit is known. */
 static void make_other(imki_log_cell *cell)
 {
@@ -123,8 +77,29 @@ static void make_other(imki_log_cell *cell)
     }
 }
 
-/* The unit of a known column: beside its name, at the end of the name, or of the settings. The
- * gauss of an acceleration is a capital g. */
+/* An option states a unit where the file has none; one that is not known is named anew. */
+static void advise(const imki_log_cell *cell, const imk_log_settings *settings, imk_error *error)
+{
+    const imki_log_kind *kind = cell->name.kind;
+    char name[48], meant[64] = "", way[256];
+    if (!error)
+        return;
+    imki_log_piece_copy(name, sizeof name, cell->text);
+    if (error->expected[0] && !strchr(error->expected, ' '))
+        snprintf(meant, sizeof meant, "did you mean %.24s? ", error->expected);
+    if (settings->columns)
+        snprintf(way, sizeof way, "state one that is in --columns, as %s [UNIT]",
+                 cell->column.name);
+    else
+        snprintf(way, sizeof way, "state one that is with --map, as in \"%s=%s [UNIT],...\"",
+                 cell->column.name, settings->map ? "NAME" : name);
+    snprintf(
+        error->expected, sizeof error->expected,
+        "%s%s (UNIT: %s), or correct the header; columns that --map does not name are not read",
+        meant, way, kind->examples ? kind->examples : "uT, nT, gauss");
+}
+
+/* The unit of a known column: beside its name, at the end of the name, or of the settings. */
 static imk_status find_unit(imki_log_cell *cell, const imk_log_settings *settings, bool dates,
                             imk_error *error)
 {
@@ -145,19 +120,18 @@ static imk_status find_unit(imki_log_cell *cell, const imk_log_settings *setting
             return IMK_OK;
         }
     }
-    if (kind->quantity == IMK_QUANTITY_SPECIFIC_FORCE && unit.end - unit.begin == 1 &&
-        *unit.begin == 'G')
-        text = "g";
     if (text)
         unit = (imki_log_piece){text, text + strlen(text)};
     if (cell->name.unit && !dates) {
         const imki_log_piece end = {cell->name.unit, cell->name.unit + strlen(cell->name.unit)};
         const imk_status agree =
-            imki_log_units_agree(cell->column.name, cell->text, unit, end, error);
+            imki_log_units_agree(cell->column.name, kind, cell->text, unit, end, error);
         if (agree != IMK_OK)
             return agree;
     }
-    const imk_status status = imk_unit_parse(unit.begin, unit.end, &cell->column.unit, error);
+    const imk_status status = imki_log_unit_read(unit, kind, &cell->column.unit, error);
+    if (status == IMK_ERROR_UNIT_UNKNOWN && cell->column.unit_origin == IMK_UNIT_OF_HEADER)
+        advise(cell, settings, error);
     if (status != IMK_OK && error)
         snprintf(error->field, sizeof error->field, "%s",
                  cell->column.unit_origin == IMK_UNIT_OF_SETTINGS ? kind->option
@@ -181,6 +155,10 @@ static imk_status make_known(imki_log_cell *cell, const imk_log_settings *settin
              : number       ? last
                             : "xyz34567"[name->axis]);
     const imk_status status = find_unit(cell, settings, dates, error);
+    if (status == IMK_ERROR_UNIT_UNKNOWN && !name->kind->option) { /* as without a unit */
+        make_other(cell);
+        return IMK_OK;
+    }
     if (status != IMK_OK || cell->lacks_unit)
         return status;
     if (imki_log_unit_fits(name->kind, &column->unit))
@@ -255,6 +233,25 @@ static void count_from_one(imki_log_cell *cells, size_t count)
         cells[i].name.axis -= shifted[i];
 }
 
+/* The letter T is a time, or by its unit a temperature or another quantity. */
+static void judge_letter(imki_log_cell *cell)
+{
+    const imki_log_kind *temperature = imki_log_kind_of(IMK_QUANTITY_TEMPERATURE);
+    imk_unit unit;
+    if (!cell->name.kind || cell->name.kind->quantity != IMK_QUANTITY_TIME ||
+        cell->text.end - cell->text.begin != 1 || cell->unit.begin == cell->unit.end)
+        return;
+    const imk_status status = imki_log_unit_read(cell->unit, cell->name.kind, &unit, NULL);
+    if (status == IMK_OK && imki_log_unit_fits(cell->name.kind, &unit))
+        return;
+    if (imki_log_unit_read(cell->unit, temperature, &unit, NULL) == IMK_OK &&
+        imki_log_unit_fits(temperature, &unit))
+        cell->name.kind = temperature;
+    else if (status == IMK_OK)
+        cell->name.kind = NULL;
+    cell->name.exact = cell->name.exact && cell->name.kind != temperature;
+}
+
 void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_cell *cells)
 {
     for (size_t i = 0; i < count; i++) {
@@ -267,6 +264,7 @@ void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_ce
         imki_log_unit_split(&cell->text, &cell->unit);
         imki_log_piece_copy(text, sizeof text, cell->text);
         cell->name = cell->skipped ? (imki_log_name){.axis = -1} : imki_log_name_of(text);
+        judge_letter(cell);
         const imki_log_kind *kind = cell->name.kind;
         if (kind && !kind->option && cell->unit.begin == cell->unit.end && !cell->name.unit)
             cell->name.kind = NULL;

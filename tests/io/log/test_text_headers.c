@@ -202,6 +202,126 @@ static void columns_of_ulog2csv_have_the_units_of_the_message(void **state)
     check_says(IMK_ERROR_CONFLICT, "[deg/s] does not agree with the file");
 }
 
+/* ------------------------------------------------------------------------- units in other words */
+
+static void check_unit(const char *column, const char *unit)
+{
+    char text[200];
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 100;
+    snprintf(text, sizeof text, "%s,gyro_z [rad/s]\n1,2\n", column);
+    read_text(text, &settings);
+    if (t.status != IMK_OK || strcmp(t.column[0].unit.text, unit) != 0)
+        fail_msg("%s: %s %s", column, t.column[0].unit.text, t.message);
+}
+
+static void units_are_read_in_brackets_as_at_the_end_of_a_name(void **state)
+{
+    (void)state;
+    check_unit("GyrX [DPS]", "deg/s");
+    check_unit("GyrX (mDPS)", "mdps");
+    check_unit("gyro_x [Deg/Sec]", "deg/s");
+    check_unit("gyro_x (degrees per second)", "deg/s");
+    check_unit("accel_x (M/S2)", "m/s^2");
+    check_unit("accel_x [milli-g]", "mg");
+    check_unit("accel_x [mG]", "mg"); /* no milligauss, which an acceleration is not */
+    check_unit("accel_x [G]", "g");
+    check_unit("mag_x [mG]", "mG");
+    check_unit("mag_x [Gs]", "gauss");
+    check_unit("Time (S)", "s");
+    check_unit("time [msec]", "ms");
+    check_unit("time [USEC]", "us");
+    check_unit("Temp (C)", "degC");
+    check_unit("T [degC]", "degC");
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_TEMPERATURE);
+    check_unit("T_degC", "degC");
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_TEMPERATURE);
+    check_unit("T (C)", "degC");
+    check_unit("T (ms)", "ms");
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_TIME);
+    check_unit("T (deg)", "deg"); /* no time, and no temperature that is known */
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_OTHER);
+    check_unit("mag_x [a.u.]", "a.u."); /* as without a unit */
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_OTHER);
+    const imk_log_settings settings = imk_log_default();
+    read_text("time,gyro_x\nmsec,Deg/Sec\n0,1\n10,2\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_string_equal(t.column[0].unit.text, "ms");
+    read_text("time [s],gyro_x [rad/s],T [degC]\n0,1,20\n1,2,20\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.column[2].quantity, IMK_QUANTITY_TEMPERATURE);
+}
+
+static void check_unknown(const char *column, const char *words)
+{
+    char text[200];
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 100;
+    snprintf(text, sizeof text, "%s,gyro_z [rad/s]\n1,2\n", column);
+    read_text(text, &settings);
+    check_says(IMK_ERROR_UNIT_UNKNOWN, words);
+}
+
+/* The letters are near those of dB, rad, deg, milligram, s and mdeg, which these columns do not
+ * have, or have in another multiple. */
+static void only_units_that_a_column_can_have_are_suggested(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {"gx (d/s)",         "dtheta_x [raw]", "temperature [°F]",
+                                        "accel_x [millig]", "time [ks]",      "gyro_x [udeg/s]"};
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+        check_unknown(wrong[k], "is not a known unit; state one that is with --map, as in ");
+        assert_null(strstr(t.message, "did you mean"));
+    }
+    check_unknown("GyrX [mdpss]", "did you mean mdps? state one that is with --map, as in "
+                                  "\"gyro_x=GyrX [UNIT],...\" (UNIT: deg/s, rad/s, count)");
+    check_unknown("accel_x [meter/s^2]", "is not a known unit");
+    imk_log_settings settings = imk_log_default();
+    settings.time_unit = "d";
+    read_text("time,gyro_x [rad/s]\n1,2\n", &settings);
+    check_says(IMK_ERROR_UNIT_UNKNOWN, "\"d\" is not a known unit; expected a unit such as s, ms, us");
+}
+
+static void a_unit_that_is_not_known_may_be_stated(void **state)
+{
+    (void)state;
+    imk_log_settings settings = imk_log_default();
+    static const char text[] = "time [s],GyrX [d/s]\n0,180\n1,0\n";
+    settings.map = "time=time,gyro_x=GyrX [deg/s]";
+    read_text(text, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    CHECK_CLOSE(t.data[1][0], 3.14159265358979, 1e-14); /* 180 deg */
+    settings.map = NULL;
+    settings.columns = "time,gyro_x [deg/s]";
+    read_text(text, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    CHECK_CLOSE(t.data[1][0], 3.14159265358979, 1e-14);
+    settings.columns = "time,gyro_x";
+    read_text(text, &settings);
+    check_says(IMK_ERROR_UNIT_UNKNOWN, "state one that is in --columns, as gyro_x [UNIT]");
+    /* One that is known is not overruled, and the same in other words is the same. */
+    settings.columns = NULL;
+    settings.map = "time=time,gyro_x=GyrX [rad/s]";
+    read_text("time [s],GyrX [DPS]\n0,180\n", &settings);
+    check_says(IMK_ERROR_CONFLICT, "[rad/s] does not agree with the file, which says [DPS]");
+    settings.map = "time=time,gyro_x=GyrX [deg/s]";
+    read_text("time [s],GyrX [DPS]\n0,180\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+}
+
+static void a_line_of_units_agrees_with_the_header(void **state)
+{
+    (void)state;
+    const imk_log_settings settings = imk_log_default();
+    read_text("time [s],gyro_x [deg/s]\ns,rad/s\n0,1\n", &settings);
+    check_says(IMK_ERROR_CONFLICT,
+               "gyro_x: rad/s in the line of units does not agree with [deg/s] in the header");
+    read_text("time [s],gyro_x [deg/s]\ns,dps\n0,1\n1,1\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.rows, 2);
+    assert_int_equal(t.damaged, 0);
+}
+
 /* ------------------------------------------------------------------------- axes counted from 1 */
 
 static void check_axes(const char *header, int first, int second, int third)
@@ -455,6 +575,10 @@ int main(void)
         cmocka_unit_test(seconds_alone_are_no_time_beside_the_rest),
         cmocka_unit_test(an_index_stands_before_a_unit),
         cmocka_unit_test(columns_of_ulog2csv_have_the_units_of_the_message),
+        cmocka_unit_test(units_are_read_in_brackets_as_at_the_end_of_a_name),
+        cmocka_unit_test(only_units_that_a_column_can_have_are_suggested),
+        cmocka_unit_test(a_unit_that_is_not_known_may_be_stated),
+        cmocka_unit_test(a_line_of_units_agrees_with_the_header),
         cmocka_unit_test(axes_may_be_counted_from_one),
         cmocka_unit_test(units_must_agree_with_the_end_of_the_name),
         cmocka_unit_test(times_of_another_unit_are_refused),

@@ -189,13 +189,13 @@ static imk_status replace_names(const char *columns, bool has_header, imki_csv_h
         imki_log_unit_split(&own, &own_unit);
         if (own_unit.begin == own_unit.end)
             own_unit = imki_log_unit_of_name(own);
-        /* A unit that is not UTF-8 is not known, and yields to the one that is stated. */
-        const bool known = has_header && !skip && imki_csv_is_utf8(own_unit);
+        imki_log_piece_copy(first, sizeof first, name);
+        const imki_log_kind *kind = imki_log_name_of(first).kind;
         const imk_status status =
-            known ? imki_log_units_agree("columns", own, unit, own_unit, error) : IMK_OK;
+            has_header && !skip ? imki_log_units_agree("columns", kind, own, unit, own_unit, error)
+                                : IMK_OK;
         if (status != IMK_OK)
             return status;
-        imki_log_piece_copy(first, sizeof first, name);
         if (unit.begin < unit.end)
             imki_log_piece_copy(second, sizeof second, unit);
         else if (has_header && !skip)
@@ -218,6 +218,26 @@ static void number_columns(imki_csv_header *header)
     }
 }
 
+/* "[deg/s]", "(deg/s)", "deg/s" in a line of units. */
+static imki_log_piece without_brackets(imki_log_piece cell)
+{
+    const bool brackets = cell.end - cell.begin >= 2 && (*cell.begin == '[' || *cell.begin == '(');
+    return brackets ? (imki_log_piece){cell.begin + 1, cell.end - 1} : cell;
+}
+
+/* Is it one that a column of this name may have, or any? Of what is not UTF-8 the unit is told
+ * later. */
+static bool is_unit_for(imki_log_piece name, imki_log_piece cell)
+{
+    char text[48];
+    imk_unit unit;
+    imki_log_piece_copy(text, sizeof text, name);
+    const imki_log_kind *kind = imki_log_name_of(text).kind;
+    return imk_unit_parse(cell.begin, cell.end, &unit, NULL) == IMK_OK ||
+           (kind && imki_log_unit_read(cell, kind, &unit, NULL) == IMK_OK) ||
+           !imki_csv_is_utf8(cell);
+}
+
 /* A line of units below that of names: "s,deg/s,deg/s". Words for no unit may stand among them. */
 static bool is_unit_row(const imki_csv_header *header, const imki_log_piece *cells, size_t count)
 {
@@ -225,25 +245,46 @@ static bool is_unit_row(const imki_csv_header *header, const imki_log_piece *cel
     size_t units = 0;
     for (size_t i = 0; i < count; i++) {
         char text[40];
-        imki_log_piece cell = cells[i], own, name = header->cell[i];
+        imki_log_piece cell = without_brackets(cells[i]), own, name = header->cell[i];
         imki_log_unit_split(&name, &own);
-        if (own.begin < own.end) /* the names have them */
-            return false;
-        if (cell.end - cell.begin >= 2 && (*cell.begin == '[' || *cell.begin == '('))
-            cell = (imki_log_piece){cell.begin + 1, cell.end - 1};
         imki_log_piece_copy(text, sizeof text, cell);
         bool is_none = false;
         for (size_t k = 0; k < sizeof none / sizeof none[0]; k++)
             is_none = is_none || strcmp(text, none[k]) == 0;
-        imk_unit unit;
-        /* Of what is not UTF-8 the unit is told later. */
-        const bool is_unit =
-            imk_unit_parse(cell.begin, cell.end, &unit, NULL) == IMK_OK || !imki_csv_is_utf8(cell);
+        const bool is_unit = is_unit_for(name, cell);
         if (!is_none && !is_unit)
             return false;
         units += is_unit && !is_none;
     }
     return units > 0;
+}
+
+/* Give the cell of a name the unit below it. One that is there already must be the same. */
+static imk_status take_unit(imki_csv_header *header, size_t index, imki_log_piece cell,
+                            imk_error *error)
+{
+    char name[48], unit[60], own_text[16], found[96];
+    imki_log_piece own, bare = header->cell[index];
+    imki_log_unit_split(&bare, &own);
+    imki_log_piece_copy(name, sizeof name, bare);
+    imki_log_piece_copy(unit, sizeof unit, cell);
+    if (!unit[0] || strcmp(unit, "-") == 0)
+        return IMK_OK;
+    if (own.begin < own.end) {
+        imki_log_piece_copy(own_text, sizeof own_text, own);
+        snprintf(found, sizeof found,
+                 "%.16s in the line of units does not agree with [%s] in the header", unit,
+                 own_text);
+        return imki_log_units_agree("", imki_log_name_of(name).kind, bare, cell, own, NULL) ==
+                       IMK_OK
+                   ? IMK_OK
+                   : imk_error_set(error, IMK_ERROR_CONFLICT, name, found,
+                                   "correct the one that is wrong");
+    }
+    snprintf(header->text[index], sizeof header->text[index], "%s [%s]", name, unit);
+    header->cell[index] =
+        (imki_log_piece){header->text[index], header->text[index] + strlen(header->text[index])};
+    return IMK_OK;
 }
 
 /* Take the line behind the header if it is one of units. */
@@ -270,16 +311,9 @@ static imk_status take_units(imk_log_reader *reader, imki_csv_header *header, im
     if (!header->units)
         return no_memory(error);
     for (size_t i = 0; i < count; i++) {
-        char name[48], unit[60];
-        imki_log_piece cell = cells[i];
-        if (cell.end - cell.begin >= 2 && (*cell.begin == '[' || *cell.begin == '('))
-            cell = (imki_log_piece){cell.begin + 1, cell.end - 1};
-        imki_log_piece_copy(name, sizeof name, header->cell[i]);
-        imki_log_piece_copy(unit, sizeof unit, cell);
-        const bool none = !unit[0] || strcmp(unit, "-") == 0;
-        snprintf(header->text[i], sizeof header->text[i], none ? "%s" : "%s [%s]", name, unit);
-        header->cell[i] =
-            (imki_log_piece){header->text[i], header->text[i] + strlen(header->text[i])};
+        const imk_status taken = take_unit(header, i, without_brackets(cells[i]), error);
+        if (taken != IMK_OK)
+            return taken;
     }
     return IMK_OK;
 }
