@@ -252,6 +252,22 @@ static void judge_letter(imki_log_cell *cell)
     cell->name.exact = cell->name.exact && cell->name.kind != temperature;
 }
 
+/* "G_X" may be gravity, or a gyro; by the unit of a rate it is a gyro. */
+static void judge_g(imki_log_cell *cell)
+{
+    const imki_log_kind *gyro = imki_log_kind_of(IMK_QUANTITY_ANGULAR_RATE);
+    char name[] = "w_x"; /* the letter that is a gyro alone */
+    imk_unit unit;
+    if (cell->name.kind || cell->text.end - cell->text.begin != 3 ||
+        imki_lower(*cell->text.begin) != 'g' ||
+        imk_unit_parse(cell->unit.begin, cell->unit.end, &unit, NULL) != IMK_OK ||
+        !imk_dimension_equal(unit.dimension, imk_unit_of(gyro->unit).dimension))
+        return;
+    name[1] = cell->text.begin[1];
+    name[2] = cell->text.begin[2];
+    cell->name = imki_log_name_of(name);
+}
+
 void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_cell *cells)
 {
     for (size_t i = 0; i < count; i++) {
@@ -265,6 +281,7 @@ void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_ce
         imki_log_piece_copy(text, sizeof text, cell->text);
         cell->name = cell->skipped ? (imki_log_name){.axis = -1} : imki_log_name_of(text);
         judge_letter(cell);
+        judge_g(cell);
         const imki_log_kind *kind = cell->name.kind;
         if (kind && !kind->option && cell->unit.begin == cell->unit.end && !cell->name.unit)
             cell->name.kind = NULL;

@@ -241,6 +241,10 @@ static void units_are_read_in_brackets_as_at_the_end_of_a_name(void **state)
     assert_int_equal(t.column[0].quantity, IMK_QUANTITY_TIME);
     check_unit("T (deg)", "deg"); /* no time, and no temperature that is known */
     assert_int_equal(t.column[0].quantity, IMK_QUANTITY_OTHER);
+    check_unit("G_X [dps]", "dps"); /* no gravity */
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_ANGULAR_RATE);
+    check_unit("G_X [m/s^2]", "m/s^2");
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_OTHER);
     check_unit("mag_x [a.u.]", "a.u."); /* as without a unit */
     assert_int_equal(t.column[0].quantity, IMK_QUANTITY_OTHER);
     const imk_log_settings settings = imk_log_default();
@@ -279,7 +283,8 @@ static void only_units_that_a_column_can_have_are_suggested(void **state)
     imk_log_settings settings = imk_log_default();
     settings.time_unit = "d";
     read_text("time,gyro_x [rad/s]\n1,2\n", &settings);
-    check_says(IMK_ERROR_UNIT_UNKNOWN, "\"d\" is not a known unit; expected a unit such as s, ms, us");
+    check_says(IMK_ERROR_UNIT_UNKNOWN,
+               "\"d\" is not a known unit; expected a unit such as s, ms, us");
 }
 
 static void a_unit_that_is_not_known_may_be_stated(void **state)
