@@ -348,6 +348,8 @@ static imk_status apply_axes(imki_log_layout_read *layout, const char *axes, imk
     const imk_status status = imki_log_axes_parse(axes, body, sign, error);
     if (status != IMK_OK)
         return status;
+    for (int a = 0; a < 3; a++)
+        layout->axes_turned = layout->axes_turned || body[a] != a || sign[a] != 1.0;
     for (size_t i = 0; i < layout->column_count; i++) {
         imk_log_column *column = &layout->column[i];
         if (column->axis < 0 || column->axis > 2)

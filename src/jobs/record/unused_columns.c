@@ -421,3 +421,34 @@ bool imki_tell_unused(size_t count, const imk_log_column *columns, int kinds,
     }
     return whole;
 }
+
+/* Is it of an axis, or of the attitude of the axes? "qw", "q0", "roll", "vel_x", "vy". */
+static bool depends_on_axes(const imk_log_column *column)
+{
+    static const char *const attitude[] = {"roll",    "pitch",      "yaw",  "heading",
+                                           "azimuth", "quaternion", "quat", "orientation",
+                                           "euler",   "attitude",   "q",    "qw"};
+    words w;
+    divide(column->name, &w);
+    for (size_t k = 0; k < w.count; k++) {
+        const size_t length = strlen(w.word[k]);
+        const char last = w.word[k][length - 1];
+        if (length <= 2 && last >= 'x' && last <= 'z')
+            return true;
+        for (size_t i = 0; i < sizeof attitude / sizeof attitude[0]; i++)
+            if (strcmp(w.word[k], attitude[i]) == 0)
+                return true;
+    }
+    return false;
+}
+
+void imki_tell_not_turned(const imk_record_source *source, size_t count,
+                          const imk_log_column *columns, imk_findings *findings)
+{
+    char names[96] = "";
+    for (size_t k = 0; k < count && source->axes_turned; k++)
+        if (is_unread(&columns[k]) && depends_on_axes(&columns[k]))
+            list(names, sizeof names, columns[k].name);
+    if (names[0])
+        imki_find(findings, IMK_FINDING_WARNING, "not_turned", names, IMKI_NUMBERS(0));
+}
