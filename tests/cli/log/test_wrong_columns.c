@@ -64,6 +64,9 @@ static void test_each_verb(void **state)
                "-mag_y, which looks like mag_y");
     check_told(" .uT.//g; s/x/x", "calibrate wrong.csv " POSES, 0,
                "mag_x, mag_y, mag_z; write the unit into the header");
+    check_told("deg.s/count/g; 1s/m.s^2/count/g; s/x/x", "identify wrong.csv -o counts.yaml", 1,
+               "the readings of wrong.csv are counts, and a model needs rates and forces: state "
+               "what a count is with --gyro-scale and --accel-scale, or the part with --device");
     /* Renamed for good, or skipped. */
     check_told("x/x",
                "allan wrong.csv --columns 'time [s],gyro_x [deg/s],-,gyro_z [deg/s],accel_x "
