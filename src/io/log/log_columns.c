@@ -80,23 +80,30 @@ static void make_other(imki_log_cell *cell)
 /* An option states a unit where the file has none; one that is not known is named anew. */
 static void advise(const imki_log_cell *cell, const imk_log_settings *settings, imk_error *error)
 {
+    static const char rest[] = "columns that --map does not name are not read";
     const imki_log_kind *kind = cell->name.kind;
-    char name[48], meant[64] = "", way[256];
+    char name[48], meant[64] = "", way[200];
     if (!error)
         return;
+    if (kind->quantity == IMK_QUANTITY_TEMPERATURE) {
+        snprintf(error->expected, sizeof error->expected,
+                 "write the column in degC or K, or leave it out, with - in its place in "
+                 "--columns, or with --map: %s",
+                 rest);
+        return;
+    }
     imki_log_piece_copy(name, sizeof name, cell->text);
     if (error->expected[0] && !strchr(error->expected, ' '))
         snprintf(meant, sizeof meant, "did you mean %.24s? ", error->expected);
     if (settings->columns)
-        snprintf(way, sizeof way, "state one that is in --columns, as %s [UNIT]",
-                 cell->column.name);
+        snprintf(way, sizeof way, "in --columns, as %s [UNIT]", cell->column.name);
     else
-        snprintf(way, sizeof way, "state one that is with --map, as in \"%s=%s [UNIT],...\"",
-                 cell->column.name, settings->map ? "NAME" : name);
-    snprintf(
-        error->expected, sizeof error->expected,
-        "%s%s (UNIT: %s), or correct the header; columns that --map does not name are not read",
-        meant, way, kind->examples ? kind->examples : "uT, nT, gauss");
+        snprintf(way, sizeof way, "with --map, as in \"%s=%s [UNIT],...\"", cell->column.name,
+                 settings->map ? "NAME" : name);
+    snprintf(error->expected, sizeof error->expected,
+             "%sif it is another word for a known unit, state that %s (UNIT: %s), or write it "
+             "into the header; %s",
+             meant, way, kind->examples ? kind->examples : "uT, nT, gauss", rest);
 }
 
 /* The unit of a known column: beside its name, at the end of the name, or of the settings. */

@@ -367,7 +367,8 @@ static likeness look(size_t count, const imk_log_column *columns, int sensor, li
         l.lacking =
             l.lacking || (has(count, columns, sensor, -1) && !has(count, columns, sensor, axis));
         l.named = l.named || strcmp(columns[k].name, like) == 0;
-        list(l.likes, sizeof l.likes, like);
+        if (!strstr(l.likes, like)) /* names of one length */
+            list(l.likes, sizeof l.likes, like);
     }
     if (l.any && !l.likes[0])
         snprintf(l.likes, sizeof l.likes, "%s_x, %s_y, %s_z", sensors[sensor].name,

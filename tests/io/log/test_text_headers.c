@@ -228,6 +228,7 @@ static void units_are_read_in_brackets_as_at_the_end_of_a_name(void **state)
     check_unit("accel_x [G]", "g");
     check_unit("mag_x [mG]", "mG");
     check_unit("mag_x [Gs]", "gauss");
+    check_unit("accel_x [mgal]", "mGal");
     check_unit("Time (S)", "s");
     check_unit("time [msec]", "ms");
     check_unit("time [USEC]", "us");
@@ -271,14 +272,17 @@ static void check_unknown(const char *column, const char *words)
 static void only_units_that_a_column_can_have_are_suggested(void **state)
 {
     (void)state;
-    static const char *const wrong[] = {"gx (d/s)",         "dtheta_x [raw]", "temperature [°F]",
-                                        "accel_x [millig]", "time [ks]",      "gyro_x [udeg/s]"};
+    static const char *const wrong[] = {"gx (d/s)", "dtheta_x [raw]", "accel_x [millig]",
+                                        "time [ks]", "gyro_x [udeg/s]"};
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
-        check_unknown(wrong[k], "is not a known unit; state one that is with --map, as in ");
+        check_unknown(wrong[k], "is not a known unit; if it is another word for a known unit, ");
         assert_null(strstr(t.message, "did you mean"));
     }
-    check_unknown("GyrX [mdpss]", "did you mean mdps? state one that is with --map, as in "
-                                  "\"gyro_x=GyrX [UNIT],...\" (UNIT: deg/s, rad/s, count)");
+    check_unknown("GyrX [mdpss]",
+                  "did you mean mdps? if it is another word for a known unit, state that with "
+                  "--map, as in \"gyro_x=GyrX [UNIT],...\" (UNIT: deg/s, rad/s, count)");
+    check_unknown("temperature [°F]", "is not a known unit; write the column in degC or K, or "
+                                      "leave it out, with - in its place in --columns");
     check_unknown("accel_x [meter/s^2]", "is not a known unit");
     imk_log_settings settings = imk_log_default();
     settings.time_unit = "d";
@@ -303,7 +307,7 @@ static void a_unit_that_is_not_known_may_be_stated(void **state)
     CHECK_CLOSE(t.data[1][0], 3.14159265358979, 1e-14);
     settings.columns = "time,gyro_x";
     read_text(text, &settings);
-    check_says(IMK_ERROR_UNIT_UNKNOWN, "state one that is in --columns, as gyro_x [UNIT]");
+    check_says(IMK_ERROR_UNIT_UNKNOWN, "state that in --columns, as gyro_x [UNIT]");
     /* One that is known is not overruled, and the same in other words is the same. */
     settings.columns = NULL;
     settings.map = "time=time,gyro_x=GyrX [rad/s]";
