@@ -41,16 +41,39 @@ static int write_into(identification *i, const imk_model *noise)
     return code;
 }
 
+/* Is a reading of a gyro or an accelerometer in counts? */
+static bool has_counts(const imk_even_record *record)
+{
+    const imk_dimension count = imk_unit_of("count").dimension;
+    for (size_t k = 0; k < record->count; k++) {
+        const imk_log_column *column = &record->log.column[record->column[k]];
+        if ((column->quantity == IMK_QUANTITY_ANGULAR_RATE ||
+             column->quantity == IMK_QUANTITY_SPECIFIC_FORCE) &&
+            imk_dimension_equal(column->unit.dimension, count))
+            return true;
+    }
+    return false;
+}
+
+/* There is no model: of what is no sensor, and of counts that are no rates and forces. */
+static int refuse_model(const identification *i)
+{
+    if (i->shown.log && has_counts(&i->shown.log->record))
+        return command_failed("the readings of %s are counts, and a model needs rates and forces: "
+                              "state what a count is with --gyro-scale and --accel-scale, or the "
+                              "part with --device PART, --gyro-range and --accel-range",
+                              i->shown.name);
+    return command_failed("%s has no gyro or accelerometer column, so there is no model to write; "
+                          "name them with --columns, such as gyro_x",
+                          i->shown.name);
+}
+
 static int write_model(identification *i, const imk_model *noise)
 {
     const identify_options *o = i->options;
     imk_error error;
     if (!noise->gyro.present && !noise->accel.present)
-        return !o->output && !o->into
-                   ? -1
-                   : command_failed("%s has no gyro or accelerometer column, so there is no model "
-                                    "to write; name them with --columns, such as gyro_x",
-                                    i->shown.name);
+        return !o->output && !o->into ? -1 : refuse_model(i);
     if (o->into)
         return write_into(i, noise);
     i->model = *noise;

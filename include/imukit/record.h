@@ -133,6 +133,7 @@ typedef struct imk_record_source {
     void (*progress)(void *context, uint64_t *done, uint64_t *total);
     /** Text number `index` of the label columns; NULL beyond the last. */
     const char *(*label)(void *context, size_t index);
+    bool axes_turned; /**< the axes of the sensors are not those of the file, but body axes */
 } imk_record_source;
 
 /** Index of the column of a quantity and axis, or -1. */

@@ -52,6 +52,9 @@ static const struct message {
      "{record}: {name}: by its name gravity is taken out of it, so that it is not what an "
      "accelerometer measures: not used; if gravity is in it, name it so with --map, such as "
      "accel_x=NAME"},
+    {"not_turned",
+     "{record}: {name}: not turned; only the axes of the sensors are, and these columns "
+     "still belong to the axes of the file"},
     {"unknown_channels", "no column is read as one of a gyro or an accelerometer: the columns are "
                          "analysed as they are, and belong to no model"},
     {"one_row", "there is only one row; record minutes to hours at rest"},

@@ -171,6 +171,15 @@ static void test_a_whole_sensor(void **state)
         {"accel_x [g],reference_rate_x [deg/s],reference_rate_y [deg/s],reference_rate_z [deg/s]",
          false, false},
         {"accel_x [g],table_rate [deg/s],roll_rate [deg/s]", false, false},
+        {"gyro_n [deg/s],gyro_e [deg/s],gyro_d [deg/s],accel_x [g]", true, false},
+        {"rate_front [deg/s],rate_right [deg/s],rate_down [deg/s],accel_x [g]", true, false},
+        {"rollspeed [rad/s],pitchspeed [rad/s],yawspeed [rad/s],accel_x [g]", true, false},
+        {"gyro_x [deg/s],accel_n [g],accel_e [g],accel_d [g]", true, false},
+        {"delta_theta_x [rad],delta_theta_y [rad],delta_theta_z [rad],accel_x [g]", true, false},
+        {"gyro_x [deg/s],deltaVelocity[0] [m/s],deltaVelocity[1] [m/s],deltaVelocity[2] [m/s]",
+         true, false},
+        {"accel_x [g],rate_bias_n [deg/s],rate_bias_e [deg/s],rate_bias_d [deg/s]", false, false},
+        {"accel_x [g],delta_x [rad],delta_y [rad],delta_z [rad]", false, false},
         {"gyro_x [deg/s],vel_x [m/s],vel_y [m/s],vel_z [m/s]", false, false},
         {"gyro_x [deg/s],angle_x [deg],angle_y [deg],angle_z [deg]", false, false},
         {"gyro_x [deg/s],mag_x [uT],mag_y [uT],mag_z [uT]", false, false},
@@ -182,6 +191,23 @@ static void test_a_whole_sensor(void **state)
             has(&a->findings, "unknown_channels", IMK_FINDING_WARNING) != logs[k].channels)
             fail_msg("%s", logs[k].header);
         imk_allan_log_free(a);
+    }
+    static const struct {
+        const char *header, *name;
+    } names[] = {
+        {"gyro1 [deg/s],gyro2 [deg/s],gyro3 [deg/s],accel_x [g]",
+         "gyro1, gyro2, gyro3\tgyro_x, gyro_y, gyro_z"},
+        {"gyro0 [deg/s],gyro1 [deg/s],gyro2 [deg/s],accel_x [g]",
+         "gyro0, gyro1, gyro2\tgyro_x, gyro_y, gyro_z"},
+        {"delta_theta_x [rad],delta_theta_y [rad],delta_theta_z [rad],accel_x [g]",
+         "delta_theta_x, delta_theta_y, delta_theta_z\tdtheta_x, dtheta_y, dtheta_z"},
+        {"p1 [deg/s],p2 [deg/s],p3 [deg/s],accel_x [g]", "p1, p2, p3\tgyro_x, gyro_y, gyro_z"},
+    };
+    for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
+        imk_allan_log *n = log_of(names[k].header);
+        assert_true(n->findings.count > 0);
+        assert_string_equal(n->findings.item[0].name, names[k].name);
+        imk_allan_log_free(n);
     }
     /* Channels of no sensor are a note. */
     imk_allan_log *a = log_of("temperature [degC],pressure");

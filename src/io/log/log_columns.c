@@ -36,67 +36,32 @@ static bool is_index(imki_log_piece inside)
     return inside.end - inside.begin == 1 && *inside.begin >= '0' && *inside.begin <= '9';
 }
 
+/* The bracket that the one at the end closes; NULL: none. */
+static const char *opening(imki_log_piece name)
+{
+    const char close = name.end[-1], open = close == ']' ? '[' : '(';
+    size_t depth = 0;
+    for (const char *p = name.end; p-- > name.begin;) {
+        depth += *p == close;
+        if (*p == open && --depth == 0)
+            return p;
+    }
+    return NULL;
+}
+
 void imki_log_unit_split(imki_log_piece *name, imki_log_piece *unit)
 {
     trim(name);
     *unit = (imki_log_piece){name->end, name->end};
     if (name->begin == name->end || (name->end[-1] != ']' && name->end[-1] != ')'))
         return;
-    const char open = name->end[-1] == ']' ? '[' : '(';
-    for (const char *p = name->begin; p < name->end; p++)
-        if (*p == open && !is_index((imki_log_piece){p + 1, name->end - 1})) {
-            *unit = (imki_log_piece){p + 1, name->end - 1};
-            name->end = p;
-            break;
-        }
+    const char *open = opening(*name);
+    if (!open || is_index((imki_log_piece){open + 1, name->end - 1}))
+        return;
+    *unit = (imki_log_piece){open + 1, name->end - 1};
+    name->end = open;
     trim(name);
     trim(unit);
-}
-
-imki_log_piece imki_log_unit_of_name(imki_log_piece name)
-{
-    char text[48];
-    imki_log_piece_copy(text, sizeof text, name);
-    const char *unit = imki_log_name_of(text).unit;
-    return unit ? (imki_log_piece){unit, unit + strlen(unit)}
-                : (imki_log_piece){name.end, name.end};
-}
-
-const char *imki_log_unit_setting(imk_quantity quantity, const imk_log_settings *settings)
-{
-    switch (quantity) {
-    case IMK_QUANTITY_TIME:
-        return settings->time_unit;
-    case IMK_QUANTITY_ANGULAR_RATE:
-        return settings->gyro_unit;
-    case IMK_QUANTITY_SPECIFIC_FORCE:
-        return settings->accel_unit;
-    case IMK_QUANTITY_TEMPERATURE:
-        return settings->temperature_unit;
-    case IMK_QUANTITY_MAGNETIC:
-    case IMK_QUANTITY_OTHER:
-        break;
-    }
-    return NULL;
-}
-
-bool imki_log_unit_fits(const imki_log_kind *kind, const imk_unit *unit)
-{
-    return imk_dimension_equal(unit->dimension, imk_unit_of(kind->unit).dimension) ||
-           (kind->quantity != IMK_QUANTITY_TIME &&
-            imk_dimension_equal(unit->dimension, imk_unit_of("count").dimension));
-}
-
-imk_status imki_log_unit_refuse(const imki_log_kind *kind, const imk_unit *unit, const char *field,
-                                imk_error *error)
-{
-    const imk_dimension due = imk_unit_of(kind->unit).dimension;
-    char found[96], expected[160];
-    snprintf(found, sizeof found, "\"%.47s\" is %.40s", unit->text,
-             imk_dimension_name(unit->dimension));
-    snprintf(expected, sizeof expected, "%.60s, such as %.80s", imk_dimension_name(due),
-             imk_dimension_examples(due));
-    return imk_error_set(error, IMK_ERROR_DIMENSION, field, found, expected);
 }
 
 /* A column without meaning here: in SI if its unit is known. */
@@ -112,8 +77,36 @@ static void make_other(imki_log_cell *cell)
     }
 }
 
-/* The unit of a known column: beside its name, at the end of the name, or of the settings. The
- * gauss of an acceleration is a capital g. */
+/* An option states a unit where the file has none; one that is not known is named anew. */
+static void advise(const imki_log_cell *cell, const imk_log_settings *settings, imk_error *error)
+{
+    static const char rest[] = "columns that --map does not name are not read";
+    const imki_log_kind *kind = cell->name.kind;
+    char name[48], meant[64] = "", way[200];
+    if (!error)
+        return;
+    if (kind->quantity == IMK_QUANTITY_TEMPERATURE) {
+        snprintf(error->expected, sizeof error->expected,
+                 "write the column in degC or K, or leave it out, with - in its place in "
+                 "--columns, or with --map: %s",
+                 rest);
+        return;
+    }
+    imki_log_piece_copy(name, sizeof name, cell->text);
+    if (error->expected[0] && !strchr(error->expected, ' '))
+        snprintf(meant, sizeof meant, "did you mean %.24s? ", error->expected);
+    if (settings->columns)
+        snprintf(way, sizeof way, "in --columns, as %s [UNIT]", cell->column.name);
+    else
+        snprintf(way, sizeof way, "with --map, as in \"%s=%s [UNIT],...\"", cell->column.name,
+                 settings->map ? "NAME" : name);
+    snprintf(error->expected, sizeof error->expected,
+             "%sif it is another word for a known unit, state that %s (UNIT: %s), or write it "
+             "into the header; %s",
+             meant, way, kind->examples ? kind->examples : "uT, nT, gauss", rest);
+}
+
+/* The unit of a known column: beside its name, at the end of the name, or of the settings. */
 static imk_status find_unit(imki_log_cell *cell, const imk_log_settings *settings, bool dates,
                             imk_error *error)
 {
@@ -134,19 +127,18 @@ static imk_status find_unit(imki_log_cell *cell, const imk_log_settings *setting
             return IMK_OK;
         }
     }
-    if (kind->quantity == IMK_QUANTITY_SPECIFIC_FORCE && unit.end - unit.begin == 1 &&
-        *unit.begin == 'G')
-        text = "g";
     if (text)
         unit = (imki_log_piece){text, text + strlen(text)};
     if (cell->name.unit && !dates) {
         const imki_log_piece end = {cell->name.unit, cell->name.unit + strlen(cell->name.unit)};
         const imk_status agree =
-            imki_log_units_agree(cell->column.name, cell->text, unit, end, error);
+            imki_log_units_agree(cell->column.name, kind, cell->text, unit, end, error);
         if (agree != IMK_OK)
             return agree;
     }
-    const imk_status status = imk_unit_parse(unit.begin, unit.end, &cell->column.unit, error);
+    const imk_status status = imki_log_unit_read(unit, kind, &cell->column.unit, error);
+    if (status == IMK_ERROR_UNIT_UNKNOWN && cell->column.unit_origin == IMK_UNIT_OF_HEADER)
+        advise(cell, settings, error);
     if (status != IMK_OK && error)
         snprintf(error->field, sizeof error->field, "%s",
                  cell->column.unit_origin == IMK_UNIT_OF_SETTINGS ? kind->option
@@ -170,6 +162,10 @@ static imk_status make_known(imki_log_cell *cell, const imk_log_settings *settin
              : number       ? last
                             : "xyz34567"[name->axis]);
     const imk_status status = find_unit(cell, settings, dates, error);
+    if (status == IMK_ERROR_UNIT_UNKNOWN && !name->kind->option) { /* as without a unit */
+        make_other(cell);
+        return IMK_OK;
+    }
     if (status != IMK_OK || cell->lacks_unit)
         return status;
     if (imki_log_unit_fits(name->kind, &column->unit))
@@ -244,6 +240,41 @@ static void count_from_one(imki_log_cell *cells, size_t count)
         cells[i].name.axis -= shifted[i];
 }
 
+/* The letter T is a time, or by its unit a temperature or another quantity. */
+static void judge_letter(imki_log_cell *cell)
+{
+    const imki_log_kind *temperature = imki_log_kind_of(IMK_QUANTITY_TEMPERATURE);
+    imk_unit unit;
+    if (!cell->name.kind || cell->name.kind->quantity != IMK_QUANTITY_TIME ||
+        cell->text.end - cell->text.begin != 1 || cell->unit.begin == cell->unit.end)
+        return;
+    const imk_status status = imki_log_unit_read(cell->unit, cell->name.kind, &unit, NULL);
+    if (status == IMK_OK && imki_log_unit_fits(cell->name.kind, &unit))
+        return;
+    if (imki_log_unit_read(cell->unit, temperature, &unit, NULL) == IMK_OK &&
+        imki_log_unit_fits(temperature, &unit))
+        cell->name.kind = temperature;
+    else if (status == IMK_OK)
+        cell->name.kind = NULL;
+    cell->name.exact = cell->name.exact && cell->name.kind != temperature;
+}
+
+/* "G_X" may be gravity, or a gyro; by the unit of a rate it is a gyro. */
+static void judge_g(imki_log_cell *cell)
+{
+    const imki_log_kind *gyro = imki_log_kind_of(IMK_QUANTITY_ANGULAR_RATE);
+    char name[] = "w_x"; /* the letter that is a gyro alone */
+    imk_unit unit;
+    if (cell->name.kind || cell->text.end - cell->text.begin != 3 ||
+        imki_lower(*cell->text.begin) != 'g' ||
+        imk_unit_parse(cell->unit.begin, cell->unit.end, &unit, NULL) != IMK_OK ||
+        !imk_dimension_equal(unit.dimension, imk_unit_of(gyro->unit).dimension))
+        return;
+    name[1] = cell->text.begin[1];
+    name[2] = cell->text.begin[2];
+    cell->name = imki_log_name_of(name);
+}
+
 void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_cell *cells)
 {
     for (size_t i = 0; i < count; i++) {
@@ -256,6 +287,8 @@ void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_ce
         imki_log_unit_split(&cell->text, &cell->unit);
         imki_log_piece_copy(text, sizeof text, cell->text);
         cell->name = cell->skipped ? (imki_log_name){.axis = -1} : imki_log_name_of(text);
+        judge_letter(cell);
+        judge_g(cell);
         const imki_log_kind *kind = cell->name.kind;
         if (kind && !kind->option && cell->unit.begin == cell->unit.end && !cell->name.unit)
             cell->name.kind = NULL;
@@ -322,6 +355,8 @@ static imk_status apply_axes(imki_log_layout_read *layout, const char *axes, imk
     const imk_status status = imki_log_axes_parse(axes, body, sign, error);
     if (status != IMK_OK)
         return status;
+    for (int a = 0; a < 3; a++)
+        layout->axes_turned = layout->axes_turned || body[a] != a || sign[a] != 1.0;
     for (size_t i = 0; i < layout->column_count; i++) {
         imk_log_column *column = &layout->column[i];
         if (column->axis < 0 || column->axis > 2)

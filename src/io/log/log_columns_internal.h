@@ -17,7 +17,7 @@ typedef struct imki_log_cell {
 
 enum { IMKI_LOG_NAME_SIZE = 128 };
 
-/* "gyro_x [deg/s]": divide at the first bracket that closes at the end. */
+/* "gyro_x [deg/s]", "gyro[0] [deg/s]": divide at the bracket that is closed at the end. */
 void imki_log_unit_split(imki_log_piece *name, imki_log_piece *unit);
 
 void imki_log_piece_copy(char *target, size_t size, imki_log_piece piece);
@@ -55,10 +55,17 @@ imk_status imki_log_map(const char *map, const imki_log_piece *header, size_t co
 /* The unit by the end of a name, as in "acc_x_mg"; empty: there is none. */
 imki_log_piece imki_log_unit_of_name(imki_log_piece name);
 
-/* The unit that the file has for a column and the one that is stated: one of them, or the same.
- * @param field  what states it @return IMK_ERROR_CONFLICT */
-imk_status imki_log_units_agree(const char *field, imki_log_piece name, imki_log_piece mapped,
-                                imki_log_piece own, imk_error *error);
+/* Read the unit of a column of a kind, which may be written as at the end of a name.
+ * @return as imk_unit_parse(); error.expected is a unit that is likely meant, or some of them */
+imk_status imki_log_unit_read(imki_log_piece text, const imki_log_kind *kind, imk_unit *unit,
+                              imk_error *error);
+
+/* The unit that the file has for a column and the one that is stated: one of them, or the same. A
+ * unit of the file that is not known says nothing.
+ * @param field  what states it @param kind  of the column; NULL: not known
+ * @return IMK_ERROR_CONFLICT */
+imk_status imki_log_units_agree(const char *field, const imki_log_kind *kind, imki_log_piece name,
+                                imki_log_piece mapped, imki_log_piece own, imk_error *error);
 
 /* Units of the settings: are they units, of the right dimension, and not others than the file's? */
 imk_status imki_log_settings_check(const imki_log_layout_read *layout,

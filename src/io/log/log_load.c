@@ -48,7 +48,8 @@ imk_record_source imk_log_source(imk_log_reader *reader)
                                .seek = seek_row,
                                .findings = findings_of,
                                .progress = progress_of,
-                               .label = label_of};
+                               .label = label_of,
+                               .axes_turned = reader->layout.axes_turned};
 }
 
 imk_status imk_log_load(const char *path, const imk_log_settings *settings, const imk_job *job,

@@ -81,26 +81,6 @@ static imk_status find_cell(imki_log_piece name, imki_log_piece bare, const imki
                   error);
 }
 
-imk_status imki_log_units_agree(const char *field, imki_log_piece name, imki_log_piece mapped,
-                                imki_log_piece own, imk_error *error)
-{
-    imk_unit a, b;
-    char found[96], first[16], second[16];
-    if (mapped.begin == mapped.end || own.begin == own.end || is_same(mapped, own))
-        return IMK_OK;
-    if (imk_unit_parse(mapped.begin, mapped.end, &a, NULL) == IMK_OK &&
-        imk_unit_parse(own.begin, own.end, &b, NULL) == IMK_OK &&
-        imk_dimension_equal(a.dimension, b.dimension) && a.scale == b.scale && a.offset == b.offset)
-        return IMK_OK;
-    imki_log_piece_copy(first, sizeof first, mapped);
-    imki_log_piece_copy(second, sizeof second, own);
-    snprintf(found, sizeof found, "[%s] does not agree with the file, which says [%s] for %.*s",
-             first, second, (int)(name.end - name.begin < 24 ? name.end - name.begin : 24),
-             name.begin);
-    return imk_error_set(error, IMK_ERROR_CONFLICT, field, found,
-                         "leave the unit out, or correct the header if it is wrong");
-}
-
 static imk_status map_one(imki_log_piece pair, const imki_log_piece *header, size_t count,
                           char (*text)[IMKI_LOG_NAME_SIZE], imki_log_piece *cells, imk_error *error)
 {
@@ -122,12 +102,12 @@ static imk_status map_one(imki_log_piece pair, const imki_log_piece *header, siz
     imki_log_unit_split(&cell, &own);
     if (own.begin == own.end)
         own = imki_log_unit_of_name(cell);
-    status = imki_log_units_agree("map", bare, unit, own, error);
-    if (status != IMK_OK)
-        return status;
     char name[48], stated[60];
     imki_log_piece_copy(name, sizeof name, to);
-    imki_log_piece_copy(stated, sizeof stated, own.begin < own.end ? own : unit);
+    status = imki_log_units_agree("map", imki_log_name_of(name).kind, bare, unit, own, error);
+    if (status != IMK_OK)
+        return status;
+    imki_log_piece_copy(stated, sizeof stated, unit.begin < unit.end ? unit : own);
     snprintf(text[index], sizeof text[index], stated[0] ? "%s [%s]" : "%s", name, stated);
     cells[index] = (imki_log_piece){text[index], text[index] + strlen(text[index])};
     return IMK_OK;

@@ -77,7 +77,8 @@ imk_status imki_log_settings_check(const imki_log_layout_read *layout,
         imk_unit unit;
         if (!text)
             continue;
-        imk_status status = imk_unit_parse(text, text + strlen(text), &unit, error);
+        imk_status status =
+            imki_log_unit_read((imki_log_piece){text, text + strlen(text)}, kind, &unit, error);
         if (status != IMK_OK) {
             if (error)
                 snprintf(error->field, sizeof error->field, "%s", kind->option);

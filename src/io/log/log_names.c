@@ -7,12 +7,14 @@
  * left unread is told, and one that is read wrongly is not. */
 #include "log_names_internal.h"
 
+#include "log_words_internal.h"
+
 #include "base/text_internal.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { GYRO, DTHETA, ACCEL, DVEL, MAG, TIME, TEMPERATURE, WORDS_MOST = 12, WORD_SIZE = 24 };
+enum { GYRO, DTHETA, ACCEL, DVEL, MAG, TIME, TEMPERATURE };
 
 const imki_log_kind imki_log_kinds[IMKI_LOG_KINDS] = {
     [GYRO] = {"gyro_", IMK_QUANTITY_ANGULAR_RATE, true, false, "rad/s", "--gyro-unit",
@@ -27,6 +29,14 @@ const imki_log_kind imki_log_kinds[IMKI_LOG_KINDS] = {
     [TIME] = {"time", IMK_QUANTITY_TIME, false, false, "s", "--time-unit", "s, ms, us, ns"},
     [TEMPERATURE] = {"temperature", IMK_QUANTITY_TEMPERATURE, false, false, "K",
                      "--temperature-unit", "degC, K"}};
+
+const imki_log_kind *imki_log_kind_of(imk_quantity quantity)
+{
+    for (size_t k = 0; k < IMKI_LOG_KINDS; k++)
+        if (imki_log_kinds[k].quantity == quantity)
+            return &imki_log_kinds[k];
+    return NULL;
+}
 
 /* The sensor in words, with blanks between. `joined`: it may have the axis at its end, "gyrox", and
  * a number, "gyro1". `of_message`: as the fields of sensor_msgs/Imu are called. */
@@ -131,6 +141,8 @@ static const struct {
             {"deg s", "deg/s", GYRO, -1},
             {"deg per s", "deg/s", GYRO, -1},
             {"deg sec", "deg/s", GYRO, -1},
+            {"degrees per second", "deg/s", GYRO, -1},
+            {"radians per second", "rad/s", GYRO, -1},
             {"dph", "deg/h", GYRO, -1},
             {"deg h", "deg/h", GYRO, -1},
             {"rads", "rad/s", GYRO, -1},
@@ -144,7 +156,10 @@ static const struct {
             {"arcsec", "arcsec", DTHETA, -1},
             {"g", "g", ACCEL, -1},
             {"mg", "mg", ACCEL, -1},
+            {"milli g", "mg", ACCEL, -1},
             {"ug", "ug", ACCEL, -1},
+            {"gal", "Gal", ACCEL, -1},
+            {"mgal", "mGal", ACCEL, -1},
             {"ms2", "m/s^2", ACCEL, -1},
             {"mss", "m/s^2", ACCEL, -1},
             {"mps2", "m/s^2", ACCEL, -1},
@@ -157,12 +172,14 @@ static const struct {
             {"ut", "uT", MAG, -1},
             {"nt", "nT", MAG, -1},
             {"gauss", "gauss", MAG, -1},
+            {"gs", "gauss", MAG, -1},
             {"mgauss", "mG", MAG, -1},
             {"lsb", "count", GYRO, ACCEL},
             {"count", "count", GYRO, ACCEL},
             {"counts", "count", GYRO, ACCEL},
             {"s", "s", TIME, -1},
             {"sec", "s", TIME, -1},
+            {"sek", "s", TIME, -1},
             {"secs", "s", TIME, -1},
             {"seconds", "s", TIME, -1},
             {"ms", "ms", TIME, -1},
@@ -186,59 +203,9 @@ static const struct {
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-typedef struct words {
-    size_t count;
-    bool overflow; /* more, or a longer one, than a name has */
-    char word[WORDS_MOST][WORD_SIZE];
-} words;
-
-static bool is_upper(char c)
-{
-    return c >= 'A' && c <= 'Z';
-}
-
-static bool is_small(char c)
-{
-    return c >= 'a' && c <= 'z';
-}
-
 static bool is_figure(char c)
 {
     return c >= '0' && c <= '9';
-}
-
-/* Does a word begin at a character although no sign stands before it? "gyroX", "IMUGyro". */
-static bool turns(const char *name, const char *at)
-{
-    return at > name && is_upper(*at) &&
-           (is_small(at[-1]) || is_figure(at[-1]) || (is_upper(at[-1]) && is_small(at[1])));
-}
-
-static void end_word(words *w, size_t *length)
-{
-    if (*length > 0)
-        w->word[w->count++][*length] = '\0';
-    *length = 0;
-}
-
-static void divide(const char *name, words *w)
-{
-    size_t length = 0;
-    *w = (words){.count = 0};
-    for (const char *c = name; *c; c++) {
-        const bool sign =
-            (unsigned char)*c < 0x80 && !is_upper(*c) && !is_small(*c) && !is_figure(*c);
-        if (sign || turns(name, c))
-            end_word(w, &length);
-        if (sign)
-            continue;
-        if (w->count == WORDS_MOST || length + 1 == WORD_SIZE) {
-            w->overflow = true;
-            return;
-        }
-        w->word[w->count][length++] = imki_lower(*c);
-    }
-    end_word(w, &length);
 }
 
 static bool is_one_of(const char *word, const char *const *list, size_t count)
@@ -249,23 +216,8 @@ static bool is_one_of(const char *word, const char *const *list, size_t count)
     return false;
 }
 
-/* How many words from `first` on are those of a phrase; 0: others. */
-static size_t match(const words *w, size_t first, size_t end, const char *phrase)
-{
-    size_t count = 0;
-    for (const char *at = phrase; *at; count++) {
-        const size_t length = strcspn(at, " ");
-        if (first + count >= end || strlen(w->word[first + count]) != length ||
-            memcmp(w->word[first + count], at, length) != 0)
-            return 0;
-        at += length;
-        at += *at == ' ';
-    }
-    return count;
-}
-
 /* "gyro1" is a gyro, the one of the number. */
-static size_t match_numbered(const words *w, size_t first, size_t end, const char *phrase)
+static size_t match_numbered(const imki_log_words *w, size_t first, size_t end, const char *phrase)
 {
     const size_t length = strlen(phrase);
     return first < end && strncmp(w->word[first], phrase, length) == 0 &&
@@ -273,12 +225,6 @@ static size_t match_numbered(const words *w, size_t first, size_t end, const cha
                    w->word[first][length + strspn(w->word[first] + length, "0123456789")] == '\0'
                ? 1
                : 0;
-}
-
-/* Are words first … end - 1 this phrase? */
-static bool are(const words *w, size_t first, size_t end, const char *phrase)
-{
-    return end > first && match(w, first, end, phrase) == end - first;
 }
 
 static int axis_of(const char *word)
@@ -291,7 +237,7 @@ static int axis_of(const char *word)
 }
 
 /* The words before the sensor, with _ between. */
-static void take_group(const words *w, size_t end, imki_log_name *name)
+static void take_group(const imki_log_words *w, size_t end, imki_log_name *name)
 {
     for (size_t i = 0; i < end; i++) {
         imki_append_text(name->group, sizeof name->group, i > 0 ? "_" : "");
@@ -300,7 +246,7 @@ static void take_group(const words *w, size_t end, imki_log_name *name)
 }
 
 /* Is it a reading by its other words? Notes the reason if not. */
-static bool is_reading(const words *w, size_t first, size_t behind, size_t end, int kind,
+static bool is_reading(const imki_log_words *w, size_t first, size_t behind, size_t end, int kind,
                        imki_log_name *name)
 {
     for (size_t i = 0; i < end; i++) {
@@ -316,7 +262,7 @@ static bool is_reading(const words *w, size_t first, size_t behind, size_t end, 
     return true;
 }
 
-static void set(imki_log_name *name, int kind, int axis, const words *w, size_t first)
+static void set(imki_log_name *name, int kind, int axis, const imki_log_words *w, size_t first)
 {
     name->kind = &imki_log_kinds[kind];
     name->axis = axis;
@@ -324,12 +270,12 @@ static void set(imki_log_name *name, int kind, int axis, const words *w, size_t 
 }
 
 /* "gyro x": the sensor somewhere before the axis. @param end  behind the axis */
-static bool find_sensor(const words *w, size_t end, imki_log_name *name)
+static bool find_sensor(const imki_log_words *w, size_t end, imki_log_name *name)
 {
     const int axis = axis_of(w->word[end - 1]);
     for (size_t first = 0; axis >= 0 && first + 1 < end; first++)
         for (size_t k = 0; k < COUNT(sensors); k++) {
-            size_t count = match(w, first, end - 1, sensors[k].words);
+            size_t count = imki_log_words_match(w, first, end - 1, sensors[k].words);
             const bool numbered = count == 0 && sensors[k].joined &&
                                   (count = match_numbered(w, first, end - 1, sensors[k].words)) > 0;
             if (count == 0)
@@ -348,11 +294,11 @@ static bool find_sensor(const words *w, size_t end, imki_log_name *name)
 }
 
 /* "gyrox", "gx", "xgyro": the sensor and its axis in one word, the last one. */
-static bool find_joined(const words *w, size_t end, imki_log_name *name)
+static bool find_joined(const imki_log_words *w, size_t end, imki_log_name *name)
 {
     const char *last = w->word[end - 1];
     const size_t length = strlen(last);
-    char rest[WORD_SIZE];
+    char rest[IMKI_LOG_WORD_SIZE];
     for (int front = 0; front < 2 && length > 1; front++) {
         const char letter[2] = {front ? last[0] : last[length - 1], '\0'};
         const int axis = is_figure(letter[0]) ? -1 : axis_of(letter);
@@ -373,11 +319,11 @@ static bool find_joined(const words *w, size_t end, imki_log_name *name)
 }
 
 /* "w_x", "a_RS_S_z": the letter first, and nothing but the frames of EuRoC behind it. */
-static bool find_letter(const words *w, size_t end, imki_log_name *name)
+static bool find_letter(const imki_log_words *w, size_t end, imki_log_name *name)
 {
     const int axis = axis_of(w->word[end - 1]);
     if (axis < 0 || is_figure(w->word[end - 1][0]) ||
-        !(end == 2 || (end == 4 && are(w, 1, 3, "rs s"))))
+        !(end == 2 || (end == 4 && imki_log_words_are(w, 1, 3, "rs s"))))
         return false;
     for (size_t k = 0; k < COUNT(letters); k++)
         if (letters[k].alone && strcmp(w->word[0], letters[k].word) == 0) {
@@ -388,20 +334,20 @@ static bool find_letter(const words *w, size_t end, imki_log_name *name)
 }
 
 /* A time or a temperature, whose words are all of the name. */
-static bool find_other(const words *w, size_t end, imki_log_name *name)
+static bool find_other(const imki_log_words *w, size_t end, imki_log_name *name)
 {
     size_t first = 0; /* "field.header.stamp" */
     if (end > 2 && strcmp(w->word[0], "field") == 0 && strcmp(w->word[1], "header") == 0)
         first = 1;
     for (size_t k = 0; k < COUNT(times); k++)
-        if (are(w, first, end, times[k].words)) {
+        if (imki_log_words_are(w, first, end, times[k].words)) {
             name->kind = &imki_log_kinds[TIME];
             name->exact = times[k].exact;
             name->unit = times[k].unit;
             return true;
         }
     for (size_t k = 0; k < COUNT(temperatures); k++)
-        if (are(w, 0, end, temperatures[k].words)) {
+        if (imki_log_words_are(w, 0, end, temperatures[k].words)) {
             name->kind = &imki_log_kinds[TEMPERATURE];
             name->exact = temperatures[k].exact;
             return true;
@@ -409,21 +355,24 @@ static bool find_other(const words *w, size_t end, imki_log_name *name)
     return false;
 }
 
-static bool find_kind(const words *w, size_t end, imki_log_name *name)
+static bool find_kind(const imki_log_words *w, size_t end, imki_log_name *name)
 {
     return end > 0 && (find_sensor(w, end, name) || find_joined(w, end, name) ||
                        find_letter(w, end, name) || find_other(w, end, name));
 }
 
 /* A unit at the end, of the kind that the words before it are. */
-static bool find_with_unit(const words *w, imki_log_name *name)
+static bool find_with_unit(const imki_log_words *w, imki_log_name *name)
 {
     for (size_t k = 0; k < COUNT(ends); k++) {
         for (size_t count = 1; count <= 3 && count < w->count; count++) {
             const size_t end = w->count - count;
             imki_log_name found = {.axis = -1};
-            if (!are(w, end, w->count, ends[k].end) || !find_kind(w, end, &found))
+            if (!imki_log_words_are(w, end, w->count, ends[k].end) || !find_kind(w, end, &found))
                 continue;
+            if (found.kind == &imki_log_kinds[TIME] && ends[k].kind == TEMPERATURE &&
+                ends[k].end[1] && imki_log_words_are(w, 0, end, "t")) /* "T_degC" */
+                found = (imki_log_name){.kind = &imki_log_kinds[TEMPERATURE], .axis = -1};
             if (found.unit || (found.kind != &imki_log_kinds[ends[k].kind] &&
                                (ends[k].other < 0 || found.kind != &imki_log_kinds[ends[k].other])))
                 continue;
@@ -433,6 +382,30 @@ static bool find_with_unit(const words *w, imki_log_name *name)
         }
     }
     return false;
+}
+
+static const char *unit_by_end(const imki_log_words *w, const imki_log_kind *kind)
+{
+    for (size_t k = 0; k < COUNT(ends) && !w->overflow; k++)
+        if (imki_log_words_are(w, 0, w->count, ends[k].end) &&
+            (kind == &imki_log_kinds[ends[k].kind] ||
+             (ends[k].other >= 0 && kind == &imki_log_kinds[ends[k].other])))
+            return ends[k].unit;
+    return NULL;
+}
+
+const char *imki_log_unit_of_words(const char *text, const imki_log_kind *kind)
+{
+    imki_log_words w;
+    char small[IMKI_LOG_WORD_SIZE];
+    size_t length = 0;
+    imki_log_words_divide(text, &w);
+    const char *unit = unit_by_end(&w, kind);
+    for (; text[length] && length + 1 < sizeof small; length++) /* "mDPS" is no m and dps */
+        small[length] = imki_lower(text[length]);
+    small[length] = '\0';
+    imki_log_words_divide(small, &w);
+    return unit || text[length] ? unit : unit_by_end(&w, kind);
 }
 
 /* "gyro_x": the sensor as docs/logs.md has it, and its axis. */
@@ -453,11 +426,11 @@ static bool is_exact(const char *name)
 imki_log_name imki_log_name_of(const char *text)
 {
     imki_log_name name = {.axis = -1};
-    words w;
+    imki_log_words w;
     /* A sign does not turn the readings round. */
     if (text[0] == '-' || text[0] == '+')
         return name;
-    divide(text, &w);
+    imki_log_words_divide(text, &w);
     if (w.overflow || w.count == 0 ||
         (!find_kind(&w, w.count, &name) && !find_with_unit(&w, &name)))
         return (imki_log_name){.axis = -1, .reason = name.reason};

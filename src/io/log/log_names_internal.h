@@ -30,7 +30,13 @@ typedef struct imki_log_name {
 enum { IMKI_LOG_KINDS = 7 };
 extern const imki_log_kind imki_log_kinds[IMKI_LOG_KINDS];
 
+/* The first kind of columns of a quantity; NULL: none. */
+const imki_log_kind *imki_log_kind_of(imk_quantity quantity);
+
 /* @param text  without the unit in brackets */
 imki_log_name imki_log_name_of(const char *text);
+
+/* The unit that a text is at the end of the name of such a column; NULL: none, or none for sure. */
+const char *imki_log_unit_of_words(const char *text, const imki_log_kind *kind);
 
 #endif

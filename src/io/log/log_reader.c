@@ -33,10 +33,11 @@ static imk_status check_settings(const imk_log_settings *settings, imk_error *er
         return IMK_ERROR_RANGE;
     }
     if ((settings->gyro_range || settings->accel_range) && !settings->device)
-        return imk_error_set(error, IMK_ERROR_CONFLICT,
-                             settings->gyro_range ? "gyro-range" : "accel-range",
-                             "it is the full scale of a device, and none is named",
-                             "add --device PART, or state --gyro-scale, --accel-scale");
+        return imk_error_set(
+            error, IMK_ERROR_CONFLICT, settings->gyro_range ? "gyro-range" : "accel-range",
+            "it is the full scale of a device, and none is named",
+            "name it with --device PART, or state what a count is with --gyro-scale and "
+            "--accel-scale");
     if ((settings->gyro_range && settings->gyro_scale) ||
         (settings->accel_range && settings->accel_scale))
         return imk_error_set(

@@ -48,6 +48,7 @@ typedef struct imki_log_layout_read {
                                            offset [SI]; 0: not known */
     int time_column;                    /* -1: none */
     bool has_increments;
+    bool axes_turned; /* those of the columns are not those of the file */
     imki_log_missing missing;
 } imki_log_layout_read;
 

@@ -52,7 +52,8 @@ static imk_status check_column(const imk_log_column *columns, size_t index, imk_
     for (size_t i = 0; i < index; i++)
         if (strcmp(columns[i].name, column->name) == 0)
             return imk_error_set(error, IMK_ERROR_COLUMN, column->name,
-                                 "two columns have this name", "");
+                                 "two columns have this name",
+                                 "leave one of them out, with --map or --columns");
     if (!(column->unit.scale > 0.0 && column->unit.scale <= DBL_MAX) ||
         !(column->unit.offset - column->unit.offset == 0.0) ||
         strpbrk(column->unit.text, ",;\"#[]\t\r\n"))

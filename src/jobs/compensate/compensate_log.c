@@ -307,6 +307,7 @@ static imk_status compensate(stream *s, const imk_job *job, imk_error *error)
     log->taken_out = imki_taken_out(&log->model);
     log->left_in = imki_left_in(&log->model, s->whole);
     imki_tell_unused(s->source->column_count, s->source->columns, IMK_KINDS, &log->findings);
+    imki_tell_not_turned(s->source, s->source->column_count, s->source->columns, &log->findings);
     status = check_model(s, error);
     for (bool first = true; status == IMK_OK && got > 0; first = false)
         status = next_block(s, first, &got, job, error);

@@ -234,6 +234,8 @@ imk_status imk_convert_log_run(const imk_record_source *source,
     if (status == IMK_OK && !settings->select) /* what is selected is known by its name */
         imki_tell_unused(source->column_count, source->columns, IMK_KINDS, c.findings);
     if (status == IMK_OK)
+        imki_tell_not_turned(source, c.count, c.column, c.findings);
+    if (status == IMK_OK)
         status = set_units(&c, error);
     if (status == IMK_OK && (settings->to_point || settings->gravity_free))
         status = imki_convert_motion_start(&c.motion, source, error);

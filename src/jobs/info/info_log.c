@@ -5,6 +5,7 @@
 
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/even_record_internal.h"
 #include "jobs/record/record_check_internal.h"
 
 #include <math.h>
@@ -286,6 +287,7 @@ static imk_status run(look *l, imk_error *error)
     info->jitter = l->steps > 0 ? sqrt(l->jitter_squares / l->steps) : 0;
     estimate_rows(l);
     imki_tell_manner(l->source, &info->findings);
+    imki_tell_unused(l->source->column_count, l->source->columns, IMK_KINDS, &info->findings);
     imki_info_rows_end(&l->rows, l->scratch);
     find_stated(l);
     info->resting = (double)NAN;

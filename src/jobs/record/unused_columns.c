@@ -3,8 +3,8 @@
  * "gyro y", "accel_z_raw". A name is taken apart into words at signs, capitals and figures. It
  * resembles a sensor's if a word is the sensor's, give or take a slip, another is an axis, and none
  * says that it is about something else, such as the standard deviation of readings. A unit of
- * another dimension rules a sensor out. Of a sensor that is not read at all, the unit and an axis
- * will do: three columns such as "Drehrate_x [deg/s]", "roll_rate_dps", "p [rad/s]". */
+ * another dimension rules a sensor out. Of a sensor that is not read at all, the unit will do:
+ * three columns such as "Drehrate_x [deg/s]", "roll_rate_dps", "rate_front [rad/s]". */
 #include "even_record_internal.h"
 
 #include "base/text_internal.h"
@@ -27,9 +27,10 @@ static const struct {
     const char *name;
     imk_quantity quantity;
     const char *unit, *integral; /* that readings and increments may have */
-} sensors[IMK_KINDS] = {{"gyro", IMK_QUANTITY_ANGULAR_RATE, "rad/s", "rad"},
-                        {"accel", IMK_QUANTITY_SPECIFIC_FORCE, "m/s^2", "m/s"},
-                        {"mag", IMK_QUANTITY_MAGNETIC, "T", "T"}};
+    const char *increment;       /* name of increments */
+} sensors[IMK_KINDS] = {{"gyro", IMK_QUANTITY_ANGULAR_RATE, "rad/s", "rad", "dtheta"},
+                        {"accel", IMK_QUANTITY_SPECIFIC_FORCE, "m/s^2", "m/s", "dvel"},
+                        {"mag", IMK_QUANTITY_MAGNETIC, "T", "T", "mag"}};
 
 /* Words of sensors, in full. */
 static const struct {
@@ -153,13 +154,35 @@ static bool is_other(const char *word)
     return false;
 }
 
+/* The sensor whose increments a word and the one behind it are: "delta_theta"; -1: of none. */
+static int sensor_of_delta(const words *w, size_t k)
+{
+    static const char *const angles[] = {"theta", "angle", "ang"};
+    static const char *const velocities[] = {"v", "vel", "velocity"};
+    if (k + 1 >= w->count || strcmp(w->word[k], "delta") != 0)
+        return -1;
+    for (size_t i = 0; i < sizeof angles / sizeof angles[0]; i++)
+        if (strcmp(w->word[k + 1], angles[i]) == 0)
+            return IMK_GYRO;
+    for (size_t i = 0; i < sizeof velocities / sizeof velocities[0]; i++)
+        if (strcmp(w->word[k + 1], velocities[i]) == 0)
+            return IMK_ACCEL;
+    return -1;
+}
+
 /* The sensor whose axis a column seems to be; -1: of none. */
-static int resembles(const imk_log_column *column, int *axis)
+static int resembles(const imk_log_column *column, int *axis, bool *by_figure)
 {
     words w;
     int sensor = -1, letter = -1, figure = -1;
     divide(column->name, &w);
     for (size_t k = 0; k < w.count; k++) {
+        const int delta = sensor_of_delta(&w, k);
+        if (delta >= 0 && fits(column, delta)) {
+            sensor = delta;
+            k++;
+            continue;
+        }
         if (is_other(w.word[k]))
             return -1;
         const int place = axis_of(w.word[k]);
@@ -177,6 +200,7 @@ static int resembles(const imk_log_column *column, int *axis)
         sensor = rate && fits(column, IMK_GYRO) ? IMK_GYRO : -1;
     }
     *axis = letter >= 0 ? letter : figure;
+    *by_figure = letter < 0;
     return *axis >= 0 ? sensor : -1;
 }
 
@@ -234,17 +258,44 @@ static int sensor_of_unit(const imk_log_column *column, int *axis)
     return -1;
 }
 
-/* Are three axes of a sensor in columns of its unit that nothing reads? */
-static bool triad_by_unit(size_t count, const imk_log_column *columns, int sensor)
+static bool is_unread(const imk_log_column *column)
+{
+    return column->quantity == IMK_QUANTITY_OTHER && !column->label;
+}
+
+/* Is it a reading of the sensor by its unit, and of nothing else by its name? */
+static bool has_unit_of(const imk_log_column *column, int sensor)
+{
+    words w;
+    divide(column->name, &w);
+    for (size_t k = 0; k < w.count; k++)
+        if (is_other(w.word[k]))
+            return false;
+    return sensor == IMK_GYRO ? is_rate(column, &w)
+                              : imk_dimension_equal(column->unit.dimension,
+                                                    imk_unit_of(sensors[sensor].unit).dimension);
+}
+
+/* How columns that nothing reads may be of a sensor that is not read. */
+typedef enum likeness_by {
+    BY_NAME,          /* only by their names */
+    BY_UNIT_AND_AXIS, /* three axes in columns of its unit */
+    BY_UNIT           /* three columns of its unit, of which the axes are not known */
+} likeness_by;
+
+static likeness_by likeness_of(size_t count, const imk_log_column *columns, int sensor)
 {
     bool found[3] = {false};
+    size_t of_unit = 0;
     for (size_t k = 0; k < count; k++) {
         int axis;
-        if (columns[k].quantity == IMK_QUANTITY_OTHER && !columns[k].label &&
-            sensor_of_unit(&columns[k], &axis) == sensor)
+        if (!is_unread(&columns[k]))
+            continue;
+        of_unit += has_unit_of(&columns[k], sensor);
+        if (sensor_of_unit(&columns[k], &axis) == sensor)
             found[axis] = true;
     }
-    return found[0] && found[1] && found[2];
+    return found[0] && found[1] && found[2] ? BY_UNIT_AND_AXIS : of_unit >= 3 ? BY_UNIT : BY_NAME;
 }
 
 /* One more of a list that may become too long for its text. */
@@ -265,26 +316,63 @@ typedef struct likeness {
     bool any, lacking, named, sign;
 } likeness;
 
-/* @param by_unit  the unit of the sensor and an axis will do */
-static likeness look(size_t count, const imk_log_column *columns, int sensor, bool by_unit)
+/* Does a column seem to be of the sensor? @param axis  receives which; -1: it is not known */
+static bool is_like(const imk_log_column *column, int sensor, likeness_by by, int *axis,
+                    bool *by_figure)
+{
+    *by_figure = false;
+    if (!is_unread(column))
+        return false;
+    if (resembles(column, axis, by_figure) == sensor)
+        return true;
+    *by_figure = false;
+    if (by == BY_UNIT_AND_AXIS)
+        return sensor_of_unit(column, axis) == sensor;
+    *axis = -1;
+    return by == BY_UNIT && has_unit_of(column, sensor);
+}
+
+/* Do the figures of the names count from 1, as in gyro1, gyro2, gyro3? */
+static bool counts_from_one(size_t count, const imk_log_column *columns, int sensor, likeness_by by)
+{
+    unsigned figures = 0;
+    for (size_t k = 0; k < count; k++) {
+        int axis;
+        bool by_figure;
+        if (is_like(&columns[k], sensor, by, &axis, &by_figure) && by_figure)
+            figures |= 1U << axis;
+    }
+    return figures == (1U << 1 | 1U << 2 | 1U << 3);
+}
+
+static likeness look(size_t count, const imk_log_column *columns, int sensor, likeness_by by)
 {
     likeness l = {.any = false};
     char like[48];
+    const bool shifted = counts_from_one(count, columns, sensor, by);
     for (size_t k = 0; k < count; k++) {
-        int axis = -1;
-        if (columns[k].quantity != IMK_QUANTITY_OTHER || columns[k].label ||
-            (resembles(&columns[k], &axis) != sensor &&
-             !(by_unit && sensor_of_unit(&columns[k], &axis) == sensor)))
+        int axis;
+        bool by_figure;
+        if (!is_like(&columns[k], sensor, by, &axis, &by_figure))
             continue;
-        imk_axis_name(sensors[sensor].name, axis, like);
         l.any = true;
+        l.sign = l.sign || columns[k].name[0] == '-' || columns[k].name[0] == '+';
+        list(l.names, sizeof l.names, columns[k].name);
+        if (axis < 0)
+            continue;
+        axis -= by_figure && shifted;
+        const bool increment = imk_dimension_equal(columns[k].unit.dimension,
+                                                   imk_unit_of(sensors[sensor].integral).dimension);
+        imk_axis_name(increment ? sensors[sensor].increment : sensors[sensor].name, axis, like);
         l.lacking =
             l.lacking || (has(count, columns, sensor, -1) && !has(count, columns, sensor, axis));
         l.named = l.named || strcmp(columns[k].name, like) == 0;
-        l.sign = l.sign || columns[k].name[0] == '-' || columns[k].name[0] == '+';
-        list(l.names, sizeof l.names, columns[k].name);
-        list(l.likes, sizeof l.likes, like);
+        if (!strstr(l.likes, like)) /* names of one length */
+            list(l.likes, sizeof l.likes, like);
     }
+    if (l.any && !l.likes[0])
+        snprintf(l.likes, sizeof l.likes, "%s_x, %s_y, %s_z", sensors[sensor].name,
+                 sensors[sensor].name, sensors[sensor].name);
     return l;
 }
 
@@ -320,7 +408,7 @@ bool imki_tell_unused(size_t count, const imk_log_column *columns, int kinds,
         /* A magnetometer beside the others is an extra, and often has no unit. */
         const bool read = sensor == IMK_MAG || has(count, columns, sensor, -1);
         const likeness l =
-            look(count, columns, sensor, !read && triad_by_unit(count, columns, sensor));
+            look(count, columns, sensor, read ? BY_NAME : likeness_of(count, columns, sensor));
         char both[sizeof l.names + sizeof l.likes];
         if (!l.any)
             continue;
@@ -333,4 +421,35 @@ bool imki_tell_unused(size_t count, const imk_log_column *columns, int kinds,
         whole = whole || !read;
     }
     return whole;
+}
+
+/* Is it of an axis, or of the attitude of the axes? "qw", "q0", "roll", "vel_x", "vy". */
+static bool depends_on_axes(const imk_log_column *column)
+{
+    static const char *const attitude[] = {"roll",    "pitch",      "yaw",  "heading",
+                                           "azimuth", "quaternion", "quat", "orientation",
+                                           "euler",   "attitude",   "q",    "qw"};
+    words w;
+    divide(column->name, &w);
+    for (size_t k = 0; k < w.count; k++) {
+        const size_t length = strlen(w.word[k]);
+        const char last = w.word[k][length - 1];
+        if (length <= 2 && last >= 'x' && last <= 'z')
+            return true;
+        for (size_t i = 0; i < sizeof attitude / sizeof attitude[0]; i++)
+            if (strcmp(w.word[k], attitude[i]) == 0)
+                return true;
+    }
+    return false;
+}
+
+void imki_tell_not_turned(const imk_record_source *source, size_t count,
+                          const imk_log_column *columns, imk_findings *findings)
+{
+    char names[96] = "";
+    for (size_t k = 0; k < count && source->axes_turned; k++)
+        if (is_unread(&columns[k]) && depends_on_axes(&columns[k]))
+            list(names, sizeof names, columns[k].name);
+    if (names[0])
+        imki_find(findings, IMK_FINDING_WARNING, "not_turned", names, IMKI_NUMBERS(0));
 }

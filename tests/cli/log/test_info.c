@@ -66,6 +66,22 @@ static void test_suggestions(void **state)
     assert_null(strstr(out, "Next:"));
 }
 
+/* A sensor that is in the log by its units, and is not read, is told as the analyses tell it. */
+static void test_columns_that_are_not_read(void **state)
+{
+    (void)state;
+    assert_int_equal(run("sed '1s/gyro_x/rate_n/;1s/gyro_y/rate_e/;1s/gyro_z/rate_d/' rest.csv "
+                         ">named.csv; $I info named.csv"),
+                     0);
+    check_contains(err,
+                   "warning: named.csv: no column is read as gyro_x, gyro_y, gyro_z; rate_n, "
+                   "rate_e, rate_d may be that",
+                   "warning");
+    assert_int_not_equal(run("$I info rest.csv --gyro-range 250deg/s"), 0);
+    check_contains(err, "name it with --device PART, or state what a count is", "message");
+    assert_null(strstr(err, "Next:"));
+}
+
 /* What is missing is told, and the rest is shown in the numbers of the log. */
 static void test_logs_that_lack_something(void **state)
 {
@@ -184,9 +200,9 @@ static void test_refusals(void **state)
     check_contains(err, "leave --topic and --instance out", "topic");
     assert_int_equal(run("$I info rest.csv --format nonesuch"), 1);
     check_contains(err, "no format is called \"nonesuch\"", "format");
-    /* rest, model, no unit, faces, constant, bare, numbers, timeless, the drive and its log,
+    /* rest, model, no unit, named, faces, constant, bare, numbers, timeless, the drive and its log,
      * long.npy and its names, gap, empty */
-    assert_int_equal(sweep(), 14);
+    assert_int_equal(sweep(), 15);
 }
 
 int main(void)
@@ -194,6 +210,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_log_at_rest),
         cmocka_unit_test(test_suggestions),
+        cmocka_unit_test(test_columns_that_are_not_read),
         cmocka_unit_test(test_logs_that_lack_something),
         cmocka_unit_test(test_what_is_suggested),
         cmocka_unit_test(test_a_log_that_moves),

@@ -64,6 +64,9 @@ static void test_each_verb(void **state)
                "-mag_y, which looks like mag_y");
     check_told(" .uT.//g; s/x/x", "calibrate wrong.csv " POSES, 0,
                "mag_x, mag_y, mag_z; write the unit into the header");
+    check_told("deg.s/count/g; 1s/m.s^2/count/g; s/x/x", "identify wrong.csv -o counts.yaml", 1,
+               "the readings of wrong.csv are counts, and a model needs rates and forces: state "
+               "what a count is with --gyro-scale and --accel-scale, or the part with --device");
     /* Renamed for good, or skipped. */
     check_told("x/x",
                "allan wrong.csv --columns 'time [s],gyro_x [deg/s],-,gyro_z [deg/s],accel_x "
@@ -93,9 +96,36 @@ static void test_compensate(void **state)
     sweep();
 }
 
+/* --axes turns the axes of sensors; what else belongs to the axes of the file is told. */
+static void test_what_is_not_turned(void **state)
+{
+    (void)state;
+    static const char turn[] = "--axes right-forward-up", same[] = "--axes forward-right-down";
+    char line[300];
+    put("all.csv", "time [s],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],temperature [degC],"
+                   "pressure [hPa],roll [deg],q0,qy,vel_x [m/s],phase\n"
+                   "0,1,2,3,20,1000,1,1,0,0,5\n1,1,2,3,20,1000,1,1,0,0,5\n");
+    snprintf(line, sizeof line, "$I convert all.csv turned.csv %s", turn);
+    assert_int_equal(run(line), 0);
+    check_contains(err, "all.csv: roll, q0, qy, vel_x: not turned; only the axes of the sensors",
+                   "warning");
+    snprintf(line, sizeof line, "$I convert all.csv turned.csv %s --select time,gyro_x", turn);
+    assert_int_equal(run(line), 0);
+    assert_null(strstr(err, "turned;"));
+    snprintf(line, sizeof line, "$I convert all.csv turned.csv %s", same);
+    assert_int_equal(run(line), 0);
+    assert_null(strstr(err, "turned;"));
+    put("clean.yaml", "imukit: 1\ngyro: {bias: {fixed: 1 deg/s}}\n");
+    snprintf(line, sizeof line, "$I compensate all.csv clean.yaml -o turned.csv %s", turn);
+    assert_int_equal(run(line), 0);
+    check_contains(err, "roll, q0, qy, vel_x: not turned", "compensate");
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_each_verb),
-                                       cmocka_unit_test(test_compensate)};
+                                       cmocka_unit_test(test_compensate),
+                                       cmocka_unit_test(test_what_is_not_turned)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

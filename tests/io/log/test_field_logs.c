@@ -71,6 +71,10 @@ static const field_log logs[] = {
      "accSmooth[0],accSmooth[1],accSmooth[2],gyroUnfilt[0]\n"
      "0,31250,1,2,3,12,-30,2048,1\n1,31750,1,2,3,14,-31,2050,1\n",
      "--accel-unit UNIT", "--accel-unit count", "time [us], gyro xyz [deg/s], accel xyz [count]"},
+    {"PX4 `ulog2csv` of `sensor_combined`: `timestamp,gyro_rad[0],…,accelerometer_m_s2[0],…`",
+     "timestamp,gyro_rad[0],gyro_rad[1],gyro_rad[2],accelerometer_m_s2[0],accelerometer_m_s2[1],"
+     "accelerometer_m_s2[2]\n1500000,0.1,0.2,0.3,1,2,-9.8\n1505000,0.1,0.2,0.3,1,2,-9.8\n",
+     NULL, NULL, "time [us], gyro xyz [rad/s], accel xyz [m/s^2]"},
     {"Xsens MT Manager text: `// ` lines, `PacketCounter`, `Acc_X`, `Gyr_X`, `FreeAcc_X`, …",
      "// Start Time: Unknown\n// Update Rate: 100.0Hz\n"
      "PacketCounter\tAcc_X\tAcc_Y\tAcc_Z\tFreeAcc_X\tGyr_X\tGyr_Y\tGyr_Z\n"

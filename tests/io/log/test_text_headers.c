@@ -77,6 +77,22 @@ static void times_in_two_columns_are_joined(void **state)
         CHECK_CLOSE(t.data[0][1], 0.01, 0);
         CHECK_CLOSE(t.data[0][2], 1.000000001, 0);
     }
+    static const char *const more[][3] = {{"seconds", "milliseconds", "0"},
+                                          {"sec", "msec", "0"},
+                                          {"t_s", "t_ms", "0"},
+                                          {"time_sec", "time_usec", "0000"},
+                                          {"t_s", "t_us", "0000"},
+                                          {"time.s", "time.us", "0000"},
+                                          {"timestamp.sec", "timestamp.nsec", "0000000"}};
+    for (size_t k = 0; k < sizeof more / sizeof more[0]; k++) {
+        snprintf(text, sizeof text, "%s,%s,gyro_x [rad/s]\n7,25%s,1\n8,5%s,2\n", more[k][0],
+                 more[k][1], more[k][2], more[k][2]);
+        read_text(text, &settings);
+        assert_int_equal(t.status, IMK_OK);
+        assert_int_equal(t.columns, 2);
+        CHECK_CLOSE(t.data[0][0], 7.25, 0); /* 250 ms, 250000 us */
+        CHECK_CLOSE(t.data[0][1], 8.05, 0);
+    }
     read_text("sec,usec,gyro_x [rad/s]\n12,999999,1\n13,9999,2\n", &settings);
     CHECK_CLOSE(t.data[0][0], 12.999999, 0); /* a clock without epoch stays as it is */
     CHECK_CLOSE(t.data[0][1], 13.009999, 0);
@@ -109,11 +125,210 @@ static void seconds_alone_are_no_time_beside_the_rest(void **state)
     settings.map = NULL;
     read_text("header.stamp.secs,header.stamp.nsecs,gyro_x [rad/s]\n5.5,500000000,1\n", &settings);
     check_says(IMK_ERROR_COLUMN, "header.stamp.secs is only the seconds of the time");
+    read_text("seconds,milliseconds,gyro_x [rad/s]\n5,5000,1\n5,5010,1\n", &settings);
+    check_says(IMK_ERROR_COLUMN, "seconds is only the seconds of the time, and milliseconds");
+    read_text("time_s,time_ms,gyro_x [rad/s]\n5,5000,1\n5,5010,1\n", &settings);
+    check_says(IMK_ERROR_COLUMN, "twice, as time_s and time_ms; say which columns to read");
+    /* Those of a clock begin again with each minute. */
+    read_text("min,sec,msec,gyro_x [rad/s]\n5,59,0,1\n6,0,0,1\n", &settings);
+    check_says(IMK_ERROR_RATE_MISSING, "the log has no time column");
     /* The whole time stands beside them. */
     read_text("time [s],header.stamp.secs,header.stamp.nsecs,gyro_x [rad/s]\n5.5,5,5e8,1\n",
               &settings);
     assert_int_equal(t.status, IMK_OK);
     CHECK_CLOSE(t.data[0][0], 5.5, 0);
+}
+
+/* ------------------------------------------------------------------------- indices in brackets */
+
+static void an_index_stands_before_a_unit(void **state)
+{
+    (void)state;
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 100;
+    read_text("gyro[0] [deg/s],gyro[1] [deg/s],gyro[2] [deg/s],acc[0] (g),acc(1)(g),mag(2) [uT]\n"
+              "1,2,3,4,5,6\n",
+              &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_string_equal(t.column[0].name, "gyro_x");
+    assert_string_equal(t.column[2].name, "gyro_z");
+    assert_string_equal(t.column[2].unit.text, "deg/s");
+    assert_string_equal(t.column[4].name, "accel_y");
+    assert_string_equal(t.column[4].unit.text, "g");
+    assert_string_equal(t.column[5].name, "mag_z");
+    settings.map = "gyro_z=gyro[0],gyro_x=gyro[2] [deg/s]";
+    read_text("gyro[0] [deg/s],gyro[1] [deg/s],gyro[2] [deg/s]\n1,2,3\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_string_equal(t.column[0].name, "gyro_z");
+    assert_string_equal(t.column[1].name, "gyro_x");
+    settings.map = NULL;
+    settings.gyro_unit = "rad/s";
+    read_text("gyro[0],gyro[1],gyro(2)\n1,2,3\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_string_equal(t.column[1].name, "gyro_y");
+    assert_int_equal(t.column[2].axis, 2);
+    /* A unit in brackets of its own. */
+    settings.gyro_unit = NULL;
+    read_text("gyro_x [(deg)/(s)]\n180\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    CHECK_CLOSE(t.data[0][0], 3.14159265358979, 1e-14); /* 180 deg/s in rad/s */
+}
+
+/* The header that ulog2csv writes for sensor_combined: microseconds, rad/s and m/s^2 by the
+ * definition of the message [ULOG]. */
+static void columns_of_ulog2csv_have_the_units_of_the_message(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "timestamp,gyro_rad[0],gyro_rad[1],gyro_rad[2],gyro_integral_dt,accelerometer_m_s2[0],"
+        "accelerometer_m_s2[1],accelerometer_m_s2[2]\n1500000,1,2,3,10000,4,5,6\n";
+    imk_log_settings settings = imk_log_default();
+    read_text(text, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.columns, 8);
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_TIME);
+    assert_string_equal(t.column[3].name, "gyro_z");
+    assert_string_equal(t.column[7].name, "accel_z");
+    CHECK_CLOSE(t.data[0][0], 1.5, 0);
+    CHECK_CLOSE(t.data[3][0], 3, 0);
+    CHECK_CLOSE(t.data[7][0], 6, 0);
+    settings.map = "time=timestamp,gyro_x=gyro_rad[1]";
+    read_text(text, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.columns, 2);
+    CHECK_CLOSE(t.data[1][0], 2, 0);
+    settings.map = "time=timestamp,gyro_x=gyro_rad[1] [deg/s]";
+    read_text(text, &settings);
+    check_says(IMK_ERROR_CONFLICT, "[deg/s] does not agree with the file");
+}
+
+/* ------------------------------------------------------------------------- units in other words */
+
+static void check_unit(const char *column, const char *unit)
+{
+    char text[200];
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 100;
+    snprintf(text, sizeof text, "%s,gyro_z [rad/s]\n1,2\n", column);
+    read_text(text, &settings);
+    if (t.status != IMK_OK || strcmp(t.column[0].unit.text, unit) != 0)
+        fail_msg("%s: %s %s", column, t.column[0].unit.text, t.message);
+}
+
+static void units_are_read_in_brackets_as_at_the_end_of_a_name(void **state)
+{
+    (void)state;
+    check_unit("GyrX [DPS]", "deg/s");
+    check_unit("GyrX (mDPS)", "mdps");
+    check_unit("gyro_x [Deg/Sec]", "deg/s");
+    check_unit("gyro_x (degrees per second)", "deg/s");
+    check_unit("accel_x (M/S2)", "m/s^2");
+    check_unit("accel_x [milli-g]", "mg");
+    check_unit("accel_x [mG]", "mg"); /* no milligauss, which an acceleration is not */
+    check_unit("accel_x [G]", "g");
+    check_unit("mag_x [mG]", "mG");
+    check_unit("mag_x [Gs]", "gauss");
+    check_unit("accel_x [mgal]", "mGal");
+    check_unit("Time (S)", "s");
+    check_unit("time [msec]", "ms");
+    check_unit("time [USEC]", "us");
+    check_unit("Temp (C)", "degC");
+    check_unit("T [degC]", "degC");
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_TEMPERATURE);
+    check_unit("T_degC", "degC");
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_TEMPERATURE);
+    check_unit("T (C)", "degC");
+    check_unit("T (ms)", "ms");
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_TIME);
+    check_unit("T (deg)", "deg"); /* no time, and no temperature that is known */
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_OTHER);
+    check_unit("G_X [dps]", "dps"); /* no gravity */
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_ANGULAR_RATE);
+    check_unit("G_X [m/s^2]", "m/s^2");
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_OTHER);
+    check_unit("mag_x [a.u.]", "a.u."); /* as without a unit */
+    assert_int_equal(t.column[0].quantity, IMK_QUANTITY_OTHER);
+    const imk_log_settings settings = imk_log_default();
+    read_text("time,gyro_x\nmsec,Deg/Sec\n0,1\n10,2\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_string_equal(t.column[0].unit.text, "ms");
+    read_text("time [s],gyro_x [rad/s],T [degC]\n0,1,20\n1,2,20\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.column[2].quantity, IMK_QUANTITY_TEMPERATURE);
+}
+
+static void check_unknown(const char *column, const char *words)
+{
+    char text[200];
+    imk_log_settings settings = imk_log_default();
+    settings.rate = 100;
+    snprintf(text, sizeof text, "%s,gyro_z [rad/s]\n1,2\n", column);
+    read_text(text, &settings);
+    check_says(IMK_ERROR_UNIT_UNKNOWN, words);
+}
+
+/* The letters are near those of dB, rad, deg, milligram, s and mdeg, which these columns do not
+ * have, or have in another multiple. */
+static void only_units_that_a_column_can_have_are_suggested(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {"gx (d/s)", "dtheta_x [raw]", "accel_x [millig]",
+                                        "time [ks]", "gyro_x [udeg/s]"};
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+        check_unknown(wrong[k], "is not a known unit; if it is another word for a known unit, ");
+        assert_null(strstr(t.message, "did you mean"));
+    }
+    check_unknown("GyrX [mdpss]",
+                  "did you mean mdps? if it is another word for a known unit, state that with "
+                  "--map, as in \"gyro_x=GyrX [UNIT],...\" (UNIT: deg/s, rad/s, count)");
+    check_unknown("temperature [°F]", "is not a known unit; write the column in degC or K, or "
+                                      "leave it out, with - in its place in --columns");
+    check_unknown("accel_x [meter/s^2]", "is not a known unit");
+    imk_log_settings settings = imk_log_default();
+    settings.time_unit = "d";
+    read_text("time,gyro_x [rad/s]\n1,2\n", &settings);
+    check_says(IMK_ERROR_UNIT_UNKNOWN,
+               "\"d\" is not a known unit; expected a unit such as s, ms, us");
+}
+
+static void a_unit_that_is_not_known_may_be_stated(void **state)
+{
+    (void)state;
+    imk_log_settings settings = imk_log_default();
+    static const char text[] = "time [s],GyrX [d/s]\n0,180\n1,0\n";
+    settings.map = "time=time,gyro_x=GyrX [deg/s]";
+    read_text(text, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    CHECK_CLOSE(t.data[1][0], 3.14159265358979, 1e-14); /* 180 deg */
+    settings.map = NULL;
+    settings.columns = "time,gyro_x [deg/s]";
+    read_text(text, &settings);
+    assert_int_equal(t.status, IMK_OK);
+    CHECK_CLOSE(t.data[1][0], 3.14159265358979, 1e-14);
+    settings.columns = "time,gyro_x";
+    read_text(text, &settings);
+    check_says(IMK_ERROR_UNIT_UNKNOWN, "state that in --columns, as gyro_x [UNIT]");
+    /* One that is known is not overruled, and the same in other words is the same. */
+    settings.columns = NULL;
+    settings.map = "time=time,gyro_x=GyrX [rad/s]";
+    read_text("time [s],GyrX [DPS]\n0,180\n", &settings);
+    check_says(IMK_ERROR_CONFLICT, "[rad/s] does not agree with the file, which says [DPS]");
+    settings.map = "time=time,gyro_x=GyrX [deg/s]";
+    read_text("time [s],GyrX [DPS]\n0,180\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+}
+
+static void a_line_of_units_agrees_with_the_header(void **state)
+{
+    (void)state;
+    const imk_log_settings settings = imk_log_default();
+    read_text("time [s],gyro_x [deg/s]\ns,rad/s\n0,1\n", &settings);
+    check_says(IMK_ERROR_CONFLICT,
+               "gyro_x: rad/s in the line of units does not agree with [deg/s] in the header");
+    read_text("time [s],gyro_x [deg/s]\ns,dps\n0,1\n1,1\n", &settings);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.rows, 2);
+    assert_int_equal(t.damaged, 0);
 }
 
 /* ------------------------------------------------------------------------- axes counted from 1 */
@@ -367,6 +582,12 @@ int main(void)
         cmocka_unit_test(times_in_two_columns_are_joined),
         cmocka_unit_test(a_rest_of_more_than_a_second_is_no_time),
         cmocka_unit_test(seconds_alone_are_no_time_beside_the_rest),
+        cmocka_unit_test(an_index_stands_before_a_unit),
+        cmocka_unit_test(columns_of_ulog2csv_have_the_units_of_the_message),
+        cmocka_unit_test(units_are_read_in_brackets_as_at_the_end_of_a_name),
+        cmocka_unit_test(only_units_that_a_column_can_have_are_suggested),
+        cmocka_unit_test(a_unit_that_is_not_known_may_be_stated),
+        cmocka_unit_test(a_line_of_units_agrees_with_the_header),
         cmocka_unit_test(axes_may_be_counted_from_one),
         cmocka_unit_test(units_must_agree_with_the_end_of_the_name),
         cmocka_unit_test(times_of_another_unit_are_refused),

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The header of a CSV text: the first line, the last comment before the rows, or none; the names
- * and units of its cells, with those of the settings, of a line of units and of the program that
- * wrote it. */
+ * and units of its cells, with those of the settings and of a line of units. What programs write in
+ * their own way is in log_csv_programs.c. */
 #include "log_csv_internal.h"
 
 #include "base/text_internal.h"
@@ -83,87 +83,6 @@ static bool is_row(const imki_log_piece *cells, size_t count)
         any = any || !imki_log_piece_is_missing(cells[i]);
     }
     return any;
-}
-
-/* ------------------------------------------------------------------------- programs' own headers
- */
-
-static bool starts(imki_log_piece line, const char *text)
-{
-    const size_t length = strlen(text);
-    return (size_t)(line.end - line.begin) >= length && memcmp(line.begin, text, length) == 0;
-}
-
-/* Scales of a Gyroflow log: "gscale,0.001". Times are in ms unless it says otherwise [GCSV]. */
-typedef struct gcsv {
-    double time, gyro, accel, mag;
-} gcsv;
-
-static void take_scale(imki_log_piece line, const char *key, double *scale)
-{
-    double value;
-    const size_t length = strlen(key);
-    if (!starts(line, key) || line.begin + length == line.end || line.begin[length] != ',')
-        return;
-    const imki_log_piece number = {line.begin + length + 1, line.end};
-    if (imki_log_piece_is_number(number, &value) && value > 0)
-        *scale = value;
-}
-
-/* Lines of a name and a value, up to the names of the columns. */
-static imk_status read_gcsv(imk_log_reader *reader, imki_log_piece *line, bool *whole, bool *found,
-                            gcsv *scales, imk_error *error)
-{
-    do {
-        const imk_status status = imki_csv_line(&reader->text, line, whole, found, NULL, error);
-        if (status != IMK_OK || !*found)
-            return status;
-        take_scale(*line, "tscale", &scales->time);
-        take_scale(*line, "gscale", &scales->gyro);
-        take_scale(*line, "ascale", &scales->accel);
-        take_scale(*line, "mscale", &scales->mag);
-    } while (!starts(*line, "t,") && !starts(*line, "time,"));
-    return IMK_OK;
-}
-
-static void apply_gcsv(imki_csv_header *header, const gcsv *scales)
-{
-    static const struct {
-        const char *from, *to;
-    } names[] = {{"t", "time [s]"},        {"time", "time [s]"},     {"gx", "gyro_x [rad/s]"},
-                 {"rx", "gyro_x [rad/s]"}, {"gy", "gyro_y [rad/s]"}, {"ry", "gyro_y [rad/s]"},
-                 {"gz", "gyro_z [rad/s]"}, {"rz", "gyro_z [rad/s]"}, {"ax", "accel_x [g]"},
-                 {"ay", "accel_y [g]"},    {"az", "accel_z [g]"},    {"mx", "mag_x [gauss]"},
-                 {"my", "mag_y [gauss]"},  {"mz", "mag_z [gauss]"}};
-    for (size_t i = 0; i < header->count; i++)
-        for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
-            char name[16];
-            imki_log_piece_copy(name, sizeof name, header->cell[i]);
-            if (strcmp(name, names[k].from) != 0)
-                continue;
-            const char kind = names[k].to[0];
-            header->scale[i] = kind == 't'   ? scales->time
-                               : kind == 'g' ? scales->gyro
-                               : kind == 'a' ? scales->accel
-                                             : scales->mag;
-            header->cell[i] = (imki_log_piece){names[k].to, names[k].to + strlen(names[k].to)};
-            header->replaced = true;
-            break;
-        }
-}
-
-/* Step over what stands before the header: Excel's "sep=;", the lines of a Blackbox log. */
-static imk_status skip_preamble(imk_log_reader *reader, imki_log_piece *line, bool *whole,
-                                bool *found, imk_error *error)
-{
-    imk_status status = IMK_OK;
-    while (status == IMK_OK && *found && (starts(*line, "sep=") || starts(*line, "\"sep=")))
-        status = imki_csv_line(&reader->text, line, whole, found, NULL, error);
-    if (*found && starts(*line, "\"Product\",\"Blackbox"))
-        while (status == IMK_OK && *found && !starts(*line, "\"loopIteration\"") &&
-               !starts(*line, "loopIteration"))
-            status = imki_csv_line(&reader->text, line, whole, found, NULL, error);
-    return status;
 }
 
 /* ---------------------------------------------------------------------------- where the names are
@@ -270,13 +189,13 @@ static imk_status replace_names(const char *columns, bool has_header, imki_csv_h
         imki_log_unit_split(&own, &own_unit);
         if (own_unit.begin == own_unit.end)
             own_unit = imki_log_unit_of_name(own);
-        /* A unit that is not UTF-8 is not known, and yields to the one that is stated. */
-        const bool known = has_header && !skip && imki_csv_is_utf8(own_unit);
+        imki_log_piece_copy(first, sizeof first, name);
+        const imki_log_kind *kind = imki_log_name_of(first).kind;
         const imk_status status =
-            known ? imki_log_units_agree("columns", own, unit, own_unit, error) : IMK_OK;
+            has_header && !skip ? imki_log_units_agree("columns", kind, own, unit, own_unit, error)
+                                : IMK_OK;
         if (status != IMK_OK)
             return status;
-        imki_log_piece_copy(first, sizeof first, name);
         if (unit.begin < unit.end)
             imki_log_piece_copy(second, sizeof second, unit);
         else if (has_header && !skip)
@@ -286,7 +205,6 @@ static imk_status replace_names(const char *columns, bool has_header, imki_csv_h
         header->cell[i] =
             (imki_log_piece){header->text[i], header->text[i] + strlen(header->text[i])};
     }
-    header->replaced = true;
     return IMK_OK;
 }
 
@@ -298,7 +216,26 @@ static void number_columns(imki_csv_header *header)
         header->cell[i] =
             (imki_log_piece){header->text[i], header->text[i] + strlen(header->text[i])};
     }
-    header->replaced = true;
+}
+
+/* "[deg/s]", "(deg/s)", "deg/s" in a line of units. */
+static imki_log_piece without_brackets(imki_log_piece cell)
+{
+    const bool brackets = cell.end - cell.begin >= 2 && (*cell.begin == '[' || *cell.begin == '(');
+    return brackets ? (imki_log_piece){cell.begin + 1, cell.end - 1} : cell;
+}
+
+/* Is it one that a column of this name may have, or any? Of what is not UTF-8 the unit is told
+ * later. */
+static bool is_unit_for(imki_log_piece name, imki_log_piece cell)
+{
+    char text[48];
+    imk_unit unit;
+    imki_log_piece_copy(text, sizeof text, name);
+    const imki_log_kind *kind = imki_log_name_of(text).kind;
+    return imk_unit_parse(cell.begin, cell.end, &unit, NULL) == IMK_OK ||
+           (kind && imki_log_unit_read(cell, kind, &unit, NULL) == IMK_OK) ||
+           !imki_csv_is_utf8(cell);
 }
 
 /* A line of units below that of names: "s,deg/s,deg/s". Words for no unit may stand among them. */
@@ -308,25 +245,46 @@ static bool is_unit_row(const imki_csv_header *header, const imki_log_piece *cel
     size_t units = 0;
     for (size_t i = 0; i < count; i++) {
         char text[40];
-        imki_log_piece cell = cells[i], own, name = header->cell[i];
+        imki_log_piece cell = without_brackets(cells[i]), own, name = header->cell[i];
         imki_log_unit_split(&name, &own);
-        if (own.begin < own.end) /* the names have them */
-            return false;
-        if (cell.end - cell.begin >= 2 && (*cell.begin == '[' || *cell.begin == '('))
-            cell = (imki_log_piece){cell.begin + 1, cell.end - 1};
         imki_log_piece_copy(text, sizeof text, cell);
         bool is_none = false;
         for (size_t k = 0; k < sizeof none / sizeof none[0]; k++)
             is_none = is_none || strcmp(text, none[k]) == 0;
-        imk_unit unit;
-        /* Of what is not UTF-8 the unit is told later. */
-        const bool is_unit =
-            imk_unit_parse(cell.begin, cell.end, &unit, NULL) == IMK_OK || !imki_csv_is_utf8(cell);
+        const bool is_unit = is_unit_for(name, cell);
         if (!is_none && !is_unit)
             return false;
         units += is_unit && !is_none;
     }
     return units > 0;
+}
+
+/* Give the cell of a name the unit below it. One that is there already must be the same. */
+static imk_status take_unit(imki_csv_header *header, size_t index, imki_log_piece cell,
+                            imk_error *error)
+{
+    char name[48], unit[60], own_text[16], found[96];
+    imki_log_piece own, bare = header->cell[index];
+    imki_log_unit_split(&bare, &own);
+    imki_log_piece_copy(name, sizeof name, bare);
+    imki_log_piece_copy(unit, sizeof unit, cell);
+    if (!unit[0] || strcmp(unit, "-") == 0)
+        return IMK_OK;
+    if (own.begin < own.end) {
+        imki_log_piece_copy(own_text, sizeof own_text, own);
+        snprintf(found, sizeof found,
+                 "%.16s in the line of units does not agree with [%s] in the header", unit,
+                 own_text);
+        return imki_log_units_agree("", imki_log_name_of(name).kind, bare, cell, own, NULL) ==
+                       IMK_OK
+                   ? IMK_OK
+                   : imk_error_set(error, IMK_ERROR_CONFLICT, name, found,
+                                   "correct the one that is wrong");
+    }
+    snprintf(header->text[index], sizeof header->text[index], "%s [%s]", name, unit);
+    header->cell[index] =
+        (imki_log_piece){header->text[index], header->text[index] + strlen(header->text[index])};
+    return IMK_OK;
 }
 
 /* Take the line behind the header if it is one of units. */
@@ -353,36 +311,11 @@ static imk_status take_units(imk_log_reader *reader, imki_csv_header *header, im
     if (!header->units)
         return no_memory(error);
     for (size_t i = 0; i < count; i++) {
-        char name[48], unit[60];
-        imki_log_piece cell = cells[i];
-        if (cell.end - cell.begin >= 2 && (*cell.begin == '[' || *cell.begin == '('))
-            cell = (imki_log_piece){cell.begin + 1, cell.end - 1};
-        imki_log_piece_copy(name, sizeof name, header->cell[i]);
-        imki_log_piece_copy(unit, sizeof unit, cell);
-        const bool none = !unit[0] || strcmp(unit, "-") == 0;
-        snprintf(header->text[i], sizeof header->text[i], none ? "%s" : "%s [%s]", name, unit);
-        header->cell[i] =
-            (imki_log_piece){header->text[i], header->text[i] + strlen(header->text[i])};
+        const imk_status taken = take_unit(header, i, without_brackets(cells[i]), error);
+        if (taken != IMK_OK)
+            return taken;
     }
     return IMK_OK;
-}
-
-/* Names and units of the program that wrote the file. */
-static void apply_dialect(imki_csv_header *header)
-{
-    char name[IMK_LOG_COLUMNS_MAX][48];
-    const char *names[IMK_LOG_COLUMNS_MAX];
-    for (size_t i = 0; i < header->count; i++) {
-        imki_log_piece cell = header->cell[i], unit;
-        imki_log_unit_split(&cell, &unit);
-        imki_log_piece_copy(name[i], sizeof name[i], cell);
-        names[i] = name[i];
-    }
-    const imki_log_dialect *dialect = imki_log_dialect_of(header->count, names);
-    for (size_t i = 0; dialect && i < header->count; i++)
-        for (const imki_log_rename *r = dialect->name; r->from; r++)
-            if (strcmp(r->from, names[i]) == 0)
-                header->cell[i] = (imki_log_piece){r->to, r->to + strlen(r->to)};
 }
 
 /* ------------------------------------------------------------------------------------------- read
@@ -415,12 +348,12 @@ static imk_status name_row(imk_log_reader *reader, imki_log_piece line,
         number_columns(header);
     else if (!header->is_comment)
         return refuse_headless(header->count, error);
-    apply_dialect(header);
+    imki_csv_dialect_apply(header, settings->map != NULL);
     return IMK_OK;
 }
 
 static imk_status name_header(imk_log_reader *reader, imki_log_piece line, char separator,
-                              const gcsv *scales, imk_error *error)
+                              const imki_csv_scales *scales, imk_error *error)
 {
     imki_csv_header *header = &((imki_csv *)reader->state)->header;
     reader->layout.separator = separator;
@@ -434,9 +367,9 @@ static imk_status name_header(imk_log_reader *reader, imki_log_piece line, char 
     if (reader->settings.columns)
         return replace_names(reader->settings.columns, true, header, error);
     if (scales)
-        apply_gcsv(header, scales);
+        imki_csv_gyroflow_apply(header, scales, reader->settings.map != NULL);
     else
-        apply_dialect(header);
+        imki_csv_dialect_apply(header, reader->settings.map != NULL);
     return IMK_OK;
 }
 
@@ -445,16 +378,11 @@ static imk_status read_names(imk_log_reader *reader, imki_csv_comment *comment, 
     imki_log_text *text = &reader->text;
     imki_csv_header *header = &((imki_csv *)reader->state)->header;
     imki_log_piece line, cells[IMK_LOG_COLUMNS_MAX];
-    gcsv scales = {.time = 1e-3, .gyro = 1, .accel = 1, .mag = 1};
-    bool whole, found, is_gcsv = false;
+    imki_csv_scales scales = {.found = false};
+    bool whole, found;
     imk_status status = imki_csv_line(text, &line, &whole, &found, comment, error);
     if (status == IMK_OK && found)
-        status = skip_preamble(reader, &line, &whole, &found, error);
-    if (status == IMK_OK && found &&
-        (starts(line, "GYROFLOW IMU LOG") || starts(line, "CAMERA IMU LOG"))) {
-        is_gcsv = true;
-        status = read_gcsv(reader, &line, &whole, &found, &scales, error);
-    }
+        status = imki_csv_preamble_skip(reader, &line, &whole, &found, &scales, error);
     if (status != IMK_OK)
         return status;
     if (!found)
@@ -468,7 +396,7 @@ static imk_status read_names(imk_log_reader *reader, imki_csv_comment *comment, 
         return imk_error_set(error, IMK_ERROR_COLUMN, "", "the log has more than 64 columns",
                              "at most 64 columns");
     if (!is_row(cells, count) && !is_row_below(comment, line, cells, count))
-        return name_header(reader, line, separator, is_gcsv ? &scales : NULL, error);
+        return name_header(reader, line, separator, scales.found ? &scales : NULL, error);
     status = name_row(reader, line, comment, separator, error);
     text->next = line.begin; /* it is the first row */
     text->line--;

@@ -16,7 +16,6 @@ typedef struct imki_csv_header {
     size_t number;      /* of the line, from 1 */
     bool is_comment;    /* it stands behind a # */
     bool is_row;        /* there is none: `line` is the first row, or its names in a comment */
-    bool replaced;      /* the names are those of the settings or of the format */
     size_t count;
     imki_log_piece cell[IMK_LOG_COLUMNS_MAX];
     char text[IMK_LOG_COLUMNS_MAX][IMKI_LOG_NAME_SIZE]; /* of cells that are made */
@@ -59,6 +58,20 @@ void imki_csv_go_back(imki_log_text *text, size_t line);
 
 /* Find the header and what the cells of the rows are called; the text is then at the rows. */
 imk_status imki_csv_header_read(imk_log_reader *reader, imk_error *error);
+
+/* Numbers that a Gyroflow log multiplies its rows by. */
+typedef struct imki_csv_scales {
+    bool found; /* it is one */
+    double time, gyro, accel, mag;
+} imki_csv_scales;
+
+/* Step over what stands before the header: Excel's "sep=;", the lines of a Blackbox log and those
+ * of a Gyroflow log. @param line  the first one, then that of the header */
+imk_status imki_csv_preamble_skip(imk_log_reader *reader, imki_log_piece *line, bool *whole,
+                                  bool *found, imki_csv_scales *scales, imk_error *error);
+/* Names and units of the program that wrote the file. @param mapped  the names remain */
+void imki_csv_gyroflow_apply(imki_csv_header *header, const imki_csv_scales *scales, bool mapped);
+void imki_csv_dialect_apply(imki_csv_header *header, bool mapped);
 
 bool imki_csv_is_utf8(imki_log_piece piece);
 /* Refuse units that are not UTF-8, such as the degree sign of Latin-1. Names may be anything.

@@ -23,6 +23,18 @@ static const imki_log_dialect dialects[] = {
       {"field.linear_acceleration.y", "accel_y [m/s^2]"},
       {"field.linear_acceleration.z", "accel_z [m/s^2]"}},
      NULL},
+    /* Topic sensor_combined of PX4, as ulog2csv writes it: times in microseconds [ULOG]. */
+    {"PX4 sensor_combined",
+     NULL,
+     {"timestamp", "gyro_rad[0]", "accelerometer_m_s2[0]"},
+     {{"timestamp", "time [us]"},
+      {"gyro_rad[0]", "gyro_x [rad/s]"},
+      {"gyro_rad[1]", "gyro_y [rad/s]"},
+      {"gyro_rad[2]", "gyro_z [rad/s]"},
+      {"accelerometer_m_s2[0]", "accel_x [m/s^2]"},
+      {"accelerometer_m_s2[1]", "accel_y [m/s^2]"},
+      {"accelerometer_m_s2[2]", "accel_z [m/s^2]"}},
+     NULL},
     /* Files of OXTS units in the KITTI data set, one row of 30 numbers a frame, put together; x
      * forward, y left, z up. Their times are in a file of their own [KITTI]. */
     {"KITTI oxts",

@@ -55,6 +55,87 @@ static bool is_pickle(const unsigned char *bytes, size_t size)
            (bytes[2] == 0x95 || bytes[2] == ']' || bytes[2] == '}' || bytes[2] == 'c');
 }
 
+/* ---- texts that are no tables ---- */
+
+typedef struct text {
+    const char *at, *end;
+} text;
+
+static text text_of(const unsigned char *bytes, size_t size)
+{
+    const char *begin = (const char *)bytes;
+    const size_t mark = size >= 3 && memcmp(begin, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+    return (text){begin + mark, begin + size};
+}
+
+static text skip_blanks(text t)
+{
+    while (t.at < t.end && (*t.at == ' ' || *t.at == '\t' || *t.at == '\r' || *t.at == '\n'))
+        t.at++;
+    return t;
+}
+
+/* The character here, and then the next one that is not blank. */
+static char take(text *t)
+{
+    *t = skip_blanks(*t);
+    return t->at < t->end ? *t->at++ : '\0';
+}
+
+/* An object or an array of objects or arrays: {"…", [{, [[. */
+static bool is_json(const unsigned char *bytes, size_t size)
+{
+    text t = text_of(bytes, size);
+    const char first = take(&t), second = take(&t);
+    return (first == '{' && second == '"') || (first == '[' && (second == '{' || second == '['));
+}
+
+/* An object in the first line, and one begins in the second. */
+static bool is_json_lines(const unsigned char *bytes, size_t size)
+{
+    text t = text_of(bytes, size);
+    if (!is_json(bytes, size) || take(&t) != '{')
+        return false;
+    const char *line = memchr(t.at, '\n', (size_t)(t.end - t.at));
+    if (!line)
+        return false;
+    const char last = line[-1] == '\r' ? line[-2] : line[-1];
+    t.at = line;
+    return last == '}' && take(&t) == '{';
+}
+
+static bool is_xml(const unsigned char *bytes, size_t size)
+{
+    static const char *const beginnings[] = {"<?xml", "<!DOCTYPE", "<!doctype", "<!--", "<html"};
+    const text t = skip_blanks(text_of(bytes, size));
+    for (size_t i = 0; i < sizeof beginnings / sizeof beginnings[0]; i++) {
+        const size_t length = strlen(beginnings[i]);
+        if ((size_t)(t.end - t.at) >= length && memcmp(t.at, beginnings[i], length) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* A key alone in the first line, and below it one that is moved in: "header:", "  stamp:". */
+static bool is_yaml(const unsigned char *bytes, size_t size)
+{
+    text t = text_of(bytes, size);
+    if (t.end - t.at > 4 && memcmp(t.at, "---", 3) == 0)
+        t = skip_blanks((text){t.at + 3, t.end});
+    const char *line = memchr(t.at, '\n', (size_t)(t.end - t.at));
+    const char *key = line;
+    if (!line || line == t.at)
+        return false;
+    key -= line[-1] == '\r';
+    if (key - t.at < 2 || key[-1] != ':' || line + 2 >= t.end || line[1] != ' ' || line[2] != ' ')
+        return false;
+    for (const char *c = t.at; c < key - 1; c++)
+        if (*c == ',' || *c == ';' || *c == '\t' || *c == ' ')
+            return false;
+    const char *below = memchr(line + 1, '\n', (size_t)(t.end - line - 1));
+    return memchr(line + 1, ':', (size_t)((below ? below : t.end) - line - 1)) != NULL;
+}
+
 static const foreign_kind kinds[] = {
     {BYTES("PAR1"), 0, NULL, "a Parquet file", BY_PANDAS("read_parquet")},
     {BYTES("ARROW1"), 0, NULL, "an Arrow (Feather) file", BY_PANDAS("read_feather")},
@@ -90,6 +171,19 @@ static const foreign_kind kinds[] = {
     {BYTES("\x89PNG\r\n"), 0, NULL, "an image (.png)", OTHER_LOG},
     {BYTES("\xFF\xD8\xFF"), 0, NULL, "an image (.jpg)", OTHER_LOG},
     {BYTES("%PDF-"), 0, NULL, "a PDF document", OTHER_LOG},
+    {BYTES(""), 0, is_json_lines, "JSON with an object in each line",
+     "write it as CSV with a column for each number; objects without lists: python3 -c \"import "
+     "json, pandas; pandas.json_normalize([json.loads(l) for l in open('FILE')])"
+     ".to_csv('NEW.csv', index=False)\""},
+    {BYTES(""), 0, is_json, "JSON",
+     "write it as CSV with a column for each number; an array of objects without lists: python3 -c "
+     "\"import json, pandas; pandas.json_normalize(json.load(open('FILE')))"
+     ".to_csv('NEW.csv', index=False)\""},
+    {BYTES(""), 0, is_xml, "XML or HTML",
+     "write its numbers as CSV, with a column for each, in the program that made it"},
+    {BYTES(""), 0, is_yaml, "YAML",
+     "write its numbers as CSV, with a column for each; of a topic of ROS, record a bag (ros2 bag "
+     "record TOPIC) and give that"},
 };
 
 static bool is_kind(const foreign_kind *kind, const char *begin, size_t size)

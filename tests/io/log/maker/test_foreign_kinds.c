@@ -49,6 +49,16 @@ static void known_kinds_are_named(void **state)
         {BYTES("\x89PNG\r\n\x1A\n"), ".png", "log"},
         {BYTES("\xFF\xD8\xFF\xE0"), ".jpg", "log"},
         {BYTES("%PDF-1.4\n"), "PDF", "log"},
+        {BYTES("{\"t\": 0, \"g\": [1, 2]}\n{\"t\": 1, \"g\": [1, 2]}\n"), "in each line",
+         "json.loads"},
+        {BYTES("{\"t\":0}\r\n{\"t\":1}\r\n"), "in each line", "json.loads"},
+        {BYTES("[{\"time\": 0.0, \"gyro_x\": 1}, {\"time\": 1.0"), "JSON", "json.load("},
+        {BYTES("\xEF\xBB\xBF{\n  \"rows\": [\n"), "JSON", "json.load("},
+        {BYTES("[[0, 1, 2],\n [1, 1, 2]]\n"), "JSON", "json.load("},
+        {BYTES("<?xml version=\"1.0\"?>\n<gpx>\n"), "XML", "CSV"},
+        {BYTES("\n<!DOCTYPE html>\n"), "HTML", "CSV"},
+        {BYTES("header:\n  stamp:\n    sec: 1\nangular_velocity:\n  x: 1\n"), "YAML", "bag"},
+        {BYTES("---\r\nheader:\r\n  seq: 1\r\n"), "YAML", "bag"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
@@ -76,6 +86,10 @@ static void others_are_not(void **state)
         {BYTES("# PAR1\ngyro_x [deg/s]\n1\n"), IMK_OK},
         {BYTES("gyro_x [deg/s]\n1\n2"), IMK_OK},
         {BYTES("H,gyro_x [deg/s]\n1,2\n"), IMK_OK},
+        {BYTES("[a],gyro_x [deg/s]\n1,2\n2,2\n"), IMK_OK}, /* a name in brackets */
+        {BYTES("{a},gyro_x_dps\n1,2\n2,2\n"), IMK_OK},
+        {BYTES("gyro_x_dps:\n  1\n  2\n"), IMK_OK}, /* a single column */
+        {BYTES("{\r\n"), IMK_ERROR_COLUMN},
         {BYTES("\xFA\xFF\x3E\0\xC4\0"), IMK_ERROR_FORMAT},     /* the sum is wrong */
         {BYTES("\xFA\xFF\x3E\x20\xC3\0"), IMK_ERROR_FORMAT},   /* it is not whole */
         {BYTES("\x80\x09\x95\0"), IMK_ERROR_FORMAT},           /* no such protocol */
