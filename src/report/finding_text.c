@@ -99,6 +99,9 @@ static const struct message {
                           "coarse or late, state --rate"},
     {"unread", "{0} array{0s} of the file cannot be read: left out, the first is {name}, a "
                "{other}; if a sensor is in it, write it as a vector or matrix of numbers"},
+    {"frames", "the messages of the topic name several frames, {name}; {0} of {1} have another "
+               "header.frame_id than the first: if two sensors publish on the topic, the rows are "
+               "of both; record each on a topic of its own, or take them apart by frame_id"},
     {"unordered", UNORDERED},
     {"stamps:unordered", UNORDERED},
     {"missing",

@@ -91,6 +91,10 @@ static void show_faults(const imk_info_log *info, imk_table *table)
               "rows with a value that is no finite number");
     add_fault(&faults, info->damaged, "row, message or block that cannot be read",
               "rows, messages or blocks that cannot be read");
+    add_fault(&faults, info->other_frames, "message of another frame than the first",
+              "messages of another frame than the first");
+    if (info->other_frames > 0)
+        imki_text_add(&faults, " (%s): two sensors on one topic?", info->frames);
     if (info->cut_short)
         imki_text_add(&faults, "%sthe file ends in the middle of a row, message or block",
                       faults.size > 0 ? "; " : "");
@@ -198,6 +202,8 @@ static void time_data(const imk_info_log *info, imk_result *result)
     imk_result_count(result, "not_finite", (long long)info->not_finite);
     imk_result_count(result, "damaged", (long long)info->damaged);
     imk_result_flag(result, "cut_short", info->cut_short);
+    imk_result_count(result, "other_frames", (long long)info->other_frames);
+    imk_result_text(result, "frames", info->other_frames > 0 ? info->frames : NULL);
 }
 
 /* ---- columns --------------------------------------------------------------------------------- */

@@ -257,6 +257,8 @@ imk_status imki_ros_read(imk_log_reader *reader, size_t max_rows, double *const 
             imki_log_damage(reader, log->rows);
             continue;
         }
+        if (!imki_ros_frame_is_first(log, &imu))
+            imki_ros_frame_note(log, &imu);
         put_row(log, &imu, message.received, out, log->rows++);
     }
     *rows = log->rows;
