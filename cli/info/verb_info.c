@@ -85,6 +85,16 @@ static int look(const info_options *o, imk_log_reader *reader, imk_info_file *fi
     return code;
 }
 
+static bool names_repeat(const imk_info_file *file)
+{
+    for (size_t i = 0; i < file->stream_count; i++)
+        for (size_t j = i + 1; j < file->stream_count; j++)
+            if (file->stream[i].readable && file->stream[j].readable &&
+                strcmp(file->stream[i].name, file->stream[j].name) == 0)
+                return true;
+    return false;
+}
+
 /* None of the sensors is chosen, or none can be read: they are listed. What was asked for and is
  * not there remains an error. */
 static int list(const info_options *o, const char *path, const imk_log_settings *settings,
@@ -103,7 +113,8 @@ static int list(const info_options *o, const char *path, const imk_log_settings 
     if (asked || why->status == IMK_ERROR_EMPTY)
         return command_log_error(why, path);
     if (!o->json)
-        printf("Choose one: %s --topic TOPIC\n", command_line());
+        printf("Choose one: %s --topic TOPIC%s\n", command_line(),
+               names_repeat(file) ? " --instance N" : "");
     return code;
 }
 

@@ -198,12 +198,19 @@ static bool has_option(const char *text, const char *word)
     return false;
 }
 
+/* A topic that is named anew has an instance of its own, or none. */
+static bool is_replaced(const char *options, const char *word)
+{
+    return has_option(options, word) ||
+           (has_option("--instance ", word) && has_option(options, "--topic"));
+}
+
 /* The command line without the options that these replace, which have a value each. */
 static const char *command_line_but(const char *options, size_t size, char *line)
 {
     snprintf(line, size, "imukit");
     for (int i = 1; i < kept_count; i++) {
-        if (!has_option(options, kept_arguments[i]))
+        if (!is_replaced(options, kept_arguments[i]))
             append_word(line, size, kept_arguments[i]);
         else if (!strchr(kept_arguments[i], '='))
             i++;

@@ -82,6 +82,10 @@ typedef struct imk_info_log {
      *  of 0 and below 0, rows with a value that is no finite number, rows that cannot be read. */
     size_t gaps, missing, repeats, reversals, not_finite, damaged;
     bool cut_short; /**< the record ends within a row or message */
+    /** Messages among them whose frame is not that of the first, and the frames; see
+     *  imk_log_findings. */
+    size_t other_frames;
+    char frames[96];
     imk_info_motion motion;
     double resting;   /**< share of the seconds at rest; NaN: not known */
     size_t attitudes; /**< attitudes of rests that differ by more than 30 deg */

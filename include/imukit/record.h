@@ -109,6 +109,9 @@ typedef struct imk_log_findings {
      *  or of the group that is read; the first. */
     size_t unread;
     char unread_name[56], unread_kind[40];
+    /** Messages whose header.frame_id is not that of the first one; the frames, in quotes. */
+    size_t other_frames;
+    char frames[96];
 } imk_log_findings;
 
 /** Where the rows of a record come from. A function that the source does not offer is NULL. */

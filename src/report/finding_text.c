@@ -21,8 +21,10 @@
 
 #define SAMPLES_FIRST ": {0} of {1} samples (first: row {2})"
 
+/* Formats that define their columns refuse --columns, and a log without names has none to map. */
+#define BY_NAME "--map (in a log without names with --columns)"
 #define NO_TIMES                                                                                   \
-    "leave the time column out with --columns and state the sampling rate, such as --rate 100Hz"
+    "leave the time column out with " BY_NAME " and state the sampling rate, such as --rate 100Hz"
 
 #define LONGEST_STRETCH                                                                            \
     "{0} bad row{0s}, {1} missing sample{1s}: using the longest clean stretch, rows {2} to {3} "   \
@@ -32,7 +34,7 @@
     "{0?}write the unit into the header, such as mag_x [uT]{0!}if that is what it is, name it so " \
     "with --columns, with a name for each column and - for one to skip{?}{1?} (a sign in a name "  \
     "does not turn the readings round){?}"
-#define SKIP_IT "to do without this column, leave it out with --columns"
+#define SKIP_IT "to do without this column, leave it out with " BY_NAME
 #define UNORDERED "{0} row{0s} whose time does not increase: left out"
 #define DOUBLED                                                                                    \
     "{0} of {1} rows are the row before them once more, with its time and values: left out"
@@ -59,11 +61,10 @@ static const struct message {
                          "analysed as they are, and belong to no model"},
     {"one_row", "there is only one row; record minutes to hours at rest"},
     {"no_interval", "the time column does not increase, so the sampling rate is unknown; leave the "
-                    "column out with --columns and state the rate, such as --rate 100Hz"},
+                    "column out with " BY_NAME " and state the rate, such as --rate 100Hz"},
     /* record_grid.c */
     {"no_grid", "the timestamps are not evenly spaced: steps scatter by {0.0f} % of their median, "
-                "{1g} s; if only the timestamps scatter, leave the time column out with --columns "
-                "and state the sampling rate, such as --rate 100Hz; otherwise resample the log"},
+                "{1g} s; if only the timestamps scatter, " NO_TIMES "; otherwise resample the log"},
     {"time_constant", "the time is {0.10g} s in every row: " NO_TIMES},
     {"time_backwards", "time runs backwards, in {0} of {1} rows: turn the order of the rows round, "
                        "or sort them by time (sort -n)"},
@@ -102,6 +103,9 @@ static const struct message {
                           "coarse or late, state --rate"},
     {"unread", "{0} array{0s} of the file cannot be read: left out, the first is {name}, a "
                "{other}; if a sensor is in it, write it as a vector or matrix of numbers"},
+    {"frames", "the messages of the topic name several frames, {name}; {0} of {1} have another "
+               "header.frame_id than the first: if two sensors publish on the topic, the rows are "
+               "of both; record each on a topic of its own, or take them apart by frame_id"},
     {"unordered", UNORDERED},
     {"stamps:unordered", UNORDERED},
     {"missing",
@@ -150,7 +154,7 @@ static const struct message {
      "narrow and slow terms wrong: find out where rows are written twice, or read the part before "
      "by --before {1.6g}s"},
     {"copy", "{name} has the values of {other} in every row: one of the two is a copy, so give the "
-             "right columns with --columns"},
+             "right columns with " BY_NAME},
     {"follows", "the changes of {name} are those of {other}, times {0.4g}: two sensors have noise "
                 "of their own, so one of the two is computed from the other; leave it out"},
     {"correlated",
@@ -176,10 +180,10 @@ static const struct message {
                                              "wrong with the others"},
     {"no_good_rows", "no two consecutive rows are good"},
     /* allan_log.c */
-    {"no_value", "column {name} has no finite value in {0} rows; leave it out with --columns, or "
+    {"no_value", "column {name} has no finite value in {0} rows; leave it out with " BY_NAME ", or "
                  "check the log"},
     {"constant", "column {name} is constant in all {0} rows: there is no noise to analyse; leave "
-                 "it out with --columns, or check the log"},
+                 "it out with " BY_NAME ", or check the log"},
     {"too_few_for_allan", "{0} rows are too few for an Allan deviation"},
     {"statistic_needs_all",
      "column {name} has missing samples, and only oadev of rates allows gaps; leave out "
@@ -188,9 +192,9 @@ static const struct message {
     {"averaging_time", "{0g} s is outside the averaging times of this record, {1g} s to {2g} s"},
     /* identify_log.c, identify_by_allan.c */
     {"constant_identify", "column {name} is constant in all {0} rows: there is no noise to "
-                          "identify; leave it out with --columns, or check the log"},
+                          "identify; leave it out with " BY_NAME ", or check the log"},
     {"too_few_values", "column {name} has {0} finite values in {1} rows: at least 256 are needed "
-                       "to identify noise; leave it out with --columns, or check the log"},
+                       "to identify noise; leave it out with " BY_NAME ", or check the log"},
     {"too_few_to_identify",
      "{1} rows are too few to identify noise: at least 256 are needed; record minutes to hours"},
     {"moved",

@@ -206,7 +206,9 @@ static void test_few_finite(void **state)
     check_contains(
         err,
         "b.csv: column gyro_x has 99 finite values in 1000 rows: at least 256 are needed "
-        "to identify noise; leave it out with --columns, or check the log\n",
+        "to identify noise; leave it out with --map (in a log without names with --columns), or "
+        "check "
+        "the log\n",
         "99 numbers");
     assert_int_equal(run("sed '2,$s/,.*/,nan/' good.csv >b.csv"), 0);
     assert_int_equal(run("$I allan b.csv"), 1);

@@ -310,7 +310,7 @@ static void test_no_model(void **state)
                  logs[k].change);
         assert_int_equal(run(line), 1);
         check_contains(err, logs[k].told, err);
-        check_contains(err, "leave it out with --columns", err);
+        check_contains(err, "leave it out with --map (in a log without names with --columns)", err);
         assert_null(strstr(err, "converge"));
     }
     sweep();

@@ -450,6 +450,7 @@ imk_status imk_log_seek(imk_log_reader *reader, double fraction, imk_error *erro
     reader->damaged = reader->first_damaged = 0;
     reader->damaged_line = reader->damaged_column = 0;
     reader->headers = reader->first_header = 0;
+    reader->other_frames = 0;
     reader->failed = reader->cut_short = false;
     return IMK_OK;
 }
@@ -481,6 +482,8 @@ imk_log_findings imk_log_findings_get(const imk_log_reader *reader)
     found.unread = reader->unread;
     memcpy(found.unread_name, reader->unread_name, sizeof found.unread_name);
     memcpy(found.unread_kind, reader->unread_kind, sizeof found.unread_kind);
+    found.other_frames = reader->other_frames;
+    memcpy(found.frames, reader->frames, sizeof found.frames);
     if (reader->layout.time_column < 0 && reader->rows > 0)
         found.last_time = (double)(reader->rows - 1) / reader->rate;
     return found;

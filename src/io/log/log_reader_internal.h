@@ -149,6 +149,8 @@ struct imk_log_reader {
     bool cut_short;
     size_t unread; /* arrays, as in imk_log_findings */
     char unread_name[56], unread_kind[40];
+    size_t other_frames; /* messages of another frame than the first; all frames */
+    char frames[96];
     bool received;      /* the times are those of recording, as the stamps are all 0 */
     double rate;        /* [Hz]; 0: from the times */
     double time_origin; /* in the unit of the file */

@@ -33,11 +33,13 @@ static int likeness(const imk_log_stream *stream, const char *name)
     return length > 0 && length < whole && strcmp(stream->name + whole - length, name) == 0;
 }
 
+/* The only sensor of its name is the first one, too. */
 bool imki_log_stream_is_named(const imk_log_reader *reader, const imk_log_stream *stream)
 {
     const imk_log_settings *s = &reader->settings;
     return (!s->topic || likeness(stream, s->topic) > 0) &&
-           (s->instance == 0 || stream->instance == s->instance - 1);
+           (s->instance == 0 || stream->instance == s->instance - 1 ||
+            (s->instance == 1 && stream->instance < 0));
 }
 
 static bool is_asked(const imk_log_reader *reader, const imk_log_stream *stream, int alike)
@@ -47,7 +49,8 @@ static bool is_asked(const imk_log_reader *reader, const imk_log_stream *stream,
            (!topic || likeness(stream, topic) >= alike);
 }
 
-/* How a stream is asked for, besides what the settings say rightly: "--topic imu --instance 1". */
+/* How a stream is asked for: "--topic imu --instance 1", or "--instance 1" where the settings name
+ * the topic rightly. */
 static void describe(const imk_log_reader *reader, const imk_log_stream *stream, size_t size,
                      char *text)
 {
@@ -56,8 +59,7 @@ static void describe(const imk_log_reader *reader, const imk_log_stream *stream,
     for (size_t i = 0; i < reader->stream_count; i++)
         same += reader->streams[i].readable && strcmp(reader->streams[i].name, stream->name) == 0;
     const bool named = s->topic && strcmp(s->topic, stream->name) == 0;
-    const bool told = stream->instance < 0 || s->instance == stream->instance + 1 ||
-                      (same <= 1 && s->instance == 0);
+    const bool told = stream->instance < 0 || (same <= 1 && s->instance == 0);
     int used = 0;
     if (!named || told)
         used = snprintf(text, size, "--topic %.96s", stream->name);
@@ -71,10 +73,11 @@ static imk_status refuse(const imk_log_reader *reader, size_t matches, imk_error
 {
     const imk_log_settings *s = &reader->settings;
     char found[96], expected[160] = "", one[128];
-    size_t readable = 0, used = 0, listed = 0;
+    size_t readable = 0, used = 0, listed = 0, numbered = 0;
     for (size_t i = 0; i < reader->stream_count; i++) {
         const imk_log_stream *stream = &reader->streams[i];
         readable += stream->readable;
+        numbered += stream->readable && stream->instance >= 0;
         if (!(matches > 0 ? is_asked(reader, stream, 1) : stream->readable) || listed >= 3)
             continue;
         describe(reader, stream, sizeof one, one);
@@ -87,6 +90,10 @@ static imk_status refuse(const imk_log_reader *reader, size_t matches, imk_error
                                  one);
         listed++;
     }
+    if (s->instance > 1 && numbered == 0)
+        return imk_error_set(error, IMK_ERROR_NAME_UNKNOWN, "instance",
+                             "the sensors of the log are told apart by their names",
+                             "leave --instance out");
     const size_t shown = matches > 0 ? matches : readable;
     if (listed > 1)
         snprintf(expected + used, sizeof expected - used, listed < shown ? ", ...)" : ")");
@@ -138,7 +145,7 @@ imk_status imki_log_layout_of(imk_log_reader *reader, size_t count, const char *
         return imk_error_set(
             error, IMK_ERROR_CONFLICT, "columns",
             "names are for logs that have none, and this format defines its columns",
-            "leave --columns out");
+            "leave --columns out; --map chooses columns by their names");
     for (size_t i = 0; i < count; i++) {
         const char *name = names[i] ? names[i] : "-";
         cells[i] = (imki_log_piece){name, name + strlen(name)};

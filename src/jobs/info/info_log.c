@@ -189,6 +189,8 @@ static void take_findings(look *l, size_t rows_before)
     info->not_finite += f.not_finite;
     info->damaged += f.damaged;
     info->cut_short = f.cut_short;
+    info->other_frames += f.other_frames;
+    memcpy(info->frames, f.frames, sizeof info->frames);
     if (!(steps > 0))
         return;
     if (f.interval > 0 && l->steps == 0)

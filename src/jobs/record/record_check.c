@@ -120,5 +120,8 @@ void imki_tell_damage(const imk_record_source *source, imk_findings *findings)
                   IMKI_NUMBERS((double)f.headers, (double)f.first_header));
     if (f.cut_short)
         imki_find(findings, IMK_FINDING_WARNING, "cut_short", NULL, IMKI_NUMBERS((double)f.rows));
+    if (f.other_frames > 0)
+        imki_find(findings, IMK_FINDING_WARNING, "frames", f.frames,
+                  IMKI_NUMBERS((double)f.other_frames, (double)f.rows));
     imki_tell_manner(source, findings);
 }

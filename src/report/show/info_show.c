@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char *const basis_words[] = {"read",
                                           "from the index of the log",
@@ -90,6 +91,10 @@ static void show_faults(const imk_info_log *info, imk_table *table)
               "rows with a value that is no finite number");
     add_fault(&faults, info->damaged, "row, message or block that cannot be read",
               "rows, messages or blocks that cannot be read");
+    add_fault(&faults, info->other_frames, "message of another frame than the first",
+              "messages of another frame than the first");
+    if (info->other_frames > 0)
+        imki_text_add(&faults, " (%s): two sensors on one topic?", info->frames);
     if (info->cut_short)
         imki_text_add(&faults, "%sthe file ends in the middle of a row, message or block",
                       faults.size > 0 ? "; " : "");
@@ -197,6 +202,8 @@ static void time_data(const imk_info_log *info, imk_result *result)
     imk_result_count(result, "not_finite", (long long)info->not_finite);
     imk_result_count(result, "damaged", (long long)info->damaged);
     imk_result_flag(result, "cut_short", info->cut_short);
+    imk_result_count(result, "other_frames", (long long)info->other_frames);
+    imk_result_text(result, "frames", info->other_frames > 0 ? info->frames : NULL);
 }
 
 /* ---- columns --------------------------------------------------------------------------------- */
@@ -208,9 +215,18 @@ static double in_unit(const imk_info_channel *c, double value)
     return c->column.label ? value : (value - u->offset) / u->scale;
 }
 
-static const char *unit_of(const imk_info_channel *c)
+/* The unit of what is shown: increments are shown as rates. */
+static const char *unit_of(const imk_info_channel *c, size_t size, char *text)
 {
-    return c->column.unit.text[0] ? c->column.unit.text : "-";
+    const char *own = c->column.unit.text;
+    const size_t length = strlen(own);
+    if (length == 0)
+        return "-";
+    if (!c->column.increment)
+        return own;
+    const bool rate = length > 2 && strcmp(own + length - 2, "/s") == 0;
+    snprintf(text, size, "%s%s", own, rate ? "^2" : "/s");
+    return text;
 }
 
 static void show_channels(const imk_info_log *info, imk_result *result)
@@ -220,10 +236,11 @@ static void show_channels(const imk_info_log *info, imk_result *result)
                   info->timed ? " in 1 s" : "");
     for (size_t i = 0; i < info->channel_count; i++) {
         const imk_info_channel *c = &info->channel[i];
+        char unit[sizeof c->column.unit.text + 2];
         if (c->column.quantity == IMK_QUANTITY_TIME)
             continue;
         imk_table_row(table, "%s%s\t%s\t%s", c->column.name,
-                      c->column.increment ? " (as a rate)" : "", unit_of(c),
+                      c->column.increment ? " (as a rate)" : "", unit_of(c, sizeof unit, unit),
                       c->column.unit.text[0] ? origin_words[c->column.unit_origin] : "");
         if (c->column.label) {
             imk_table_add(table, "texts");

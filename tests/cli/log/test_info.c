@@ -82,6 +82,23 @@ static void test_columns_that_are_not_read(void **state)
     assert_null(strstr(err, "Next:"));
 }
 
+/* Increments are shown as rates, in the unit of a rate; `unit` is that of the log. */
+static void test_increments(void **state)
+{
+    (void)state;
+    assert_int_equal(
+        run("printf 'time [s],dtheta_x [deg],dvel_x [m/s]\\n0,1,2\\n0.5,1,2\\n1,1,2\\n' >dt.csv"),
+        0);
+    assert_int_equal(run("$I info dt.csv"), 0);
+    check_contains(out, "dtheta_x (as a rate)  deg/s  header     2 ", "1 deg in 0.5 s");
+    check_contains(out, "dvel_x (as a rate)    m/s^2  header     4 ", "2 m/s in 0.5 s");
+    json_t *root = info_json("$I info dt.csv --json");
+    json_t *dvel = json_array_get(json_object_get(record_of(root), "columns"), 2);
+    assert_string_equal(json_string_value(json_object_get(dvel, "unit")), "m/s");
+    CHECK_CLOSE(value_of(dvel, "mean"), 4, 1e-12);
+    json_decref(root);
+}
+
 /* What is missing is told, and the rest is shown in the numbers of the log. */
 static void test_logs_that_lack_something(void **state)
 {
@@ -201,8 +218,8 @@ static void test_refusals(void **state)
     assert_int_equal(run("$I info rest.csv --format nonesuch"), 1);
     check_contains(err, "no format is called \"nonesuch\"", "format");
     /* rest, model, no unit, named, faces, constant, bare, numbers, timeless, the drive and its log,
-     * long.npy and its names, gap, empty */
-    assert_int_equal(sweep(), 15);
+     * long.npy and its names, gap, increments, empty */
+    assert_int_equal(sweep(), 16);
 }
 
 int main(void)
@@ -211,6 +228,7 @@ int main(void)
         cmocka_unit_test(test_a_log_at_rest),
         cmocka_unit_test(test_suggestions),
         cmocka_unit_test(test_columns_that_are_not_read),
+        cmocka_unit_test(test_increments),
         cmocka_unit_test(test_logs_that_lack_something),
         cmocka_unit_test(test_what_is_suggested),
         cmocka_unit_test(test_a_log_that_moves),

@@ -133,6 +133,71 @@ static void hdf5(void **state)
     check_log("matrix.h5", (settings){0});
 }
 
+/* scale_factor and add_offset [CF]: of a float32 in a list of one, a double and a whole number, for
+ * whole numbers, floats, columns of a matrix and times. */
+static void coded(void **state)
+{
+    (void)state;
+    check_log("coded.h5", (settings){.topic = "scaled"});
+}
+
+/* A factor that is a text or a list is told, and its dataset not read. NaN as the number for no
+ * value, and one that no value can be, are no reason to refuse. */
+static void coded_otherwise(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *topic, *unread;
+        imk_quantity read;
+    } groups[] = {{"text", "/text/accel", IMK_QUANTITY_ANGULAR_RATE},
+                  {"list", "/list/gyro", IMK_QUANTITY_SPECIFIC_FORCE}};
+    for (size_t i = 0; i < 2; i++) {
+        imk_log log;
+        imk_error error;
+        const imk_log_settings s = settings_of(&(settings){.topic = groups[i].topic});
+        CHECK_OK(imk_log_load(FOLDER "coded.h5", &s, NULL, &log, &error));
+        assert_int_equal(log.column_count, 4);
+        for (size_t c = 0; c < log.column_count; c++) {
+            const imk_quantity q = log.column[c].quantity;
+            assert_true(q == IMK_QUANTITY_TIME || q == groups[i].read);
+            for (int row = 0; row < ROWS; row++)
+                assert_true(log.data[c][row] == sample(q, log.column[c].axis, row));
+        }
+        assert_int_equal(log.findings.unread, 1);
+        assert_string_equal(log.findings.unread_name, groups[i].unread);
+        assert_string_equal(log.findings.unread_kind, "dataset whose scale_factor is unclear");
+        imk_log_free(&log);
+    }
+}
+
+/* Numbers for no value, as make_fixtures.py puts them: rows that lack one, by quantity and axis. A
+ * float32 is compared with 1e20 as a float32; the origin is the first stamp that there is. */
+static void holes(void **state)
+{
+    (void)state;
+    imk_log log;
+    imk_error error;
+    const imk_log_settings s = settings_of(&(settings){.topic = "holes"});
+    CHECK_OK(imk_log_load(FOLDER "coded.h5", &s, NULL, &log, &error));
+    assert_int_equal(log.column_count, 7);
+    for (size_t c = 0; c < log.column_count; c++) {
+        const imk_quantity q = log.column[c].quantity;
+        const int axis = log.column[c].axis;
+        for (int row = 0; row < ROWS; row++) {
+            const bool none = q == IMK_QUANTITY_TIME ? row == 0 || row == 5
+                              : q == IMK_QUANTITY_ANGULAR_RATE
+                                  ? (row == 3 && axis == 1) || (row == 4 && axis == 0)
+                                  : (row == 7 && axis == 2) || row == 8;
+            double due = sample(q, axis, row);
+            if (q == IMK_QUANTITY_TIME) /* row 1 is the first that has one */
+                due = (double)(15625000 * (row - 1)) * 1e-9;
+            if (none ? !isnan(log.data[c][row]) : log.data[c][row] != due)
+                fail_msg("%s, row %d is %.17g", log.column[c].name, row, log.data[c][row]);
+        }
+    }
+    imk_log_free(&log);
+}
+
 /* The origin of stamps is told. 1.7e18 ns have no digits below 256 as a double. */
 static void origin(void **state)
 {
@@ -196,6 +261,8 @@ static void refusals(void **state)
                   "add --topic /left/imu (or --topic /right)");
     check_refused("virtual.h5", (settings){0}, IMK_ERROR_EMPTY,
                   "\"/gyro_x\" is a dataset whose values are in another file");
+    check_refused("coded.h5", (settings){.topic = "table"}, IMK_ERROR_NAME_UNKNOWN,
+                  "add --topic /holes (or --topic /list, --topic /scaled, ...)");
 }
 
 /* What cannot be read is listed beside what can. */
@@ -444,10 +511,14 @@ static int clean_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(npz),      cmocka_unit_test(mat),         cmocka_unit_test(hdf5),
-        cmocka_unit_test(origin),   cmocka_unit_test(refusals),    cmocka_unit_test(streams),
-        cmocka_unit_test(seek),     cmocka_unit_test(cut),         cmocka_unit_test(changed),
-        cmocka_unit_test(checksum), cmocka_unit_test(packed_bits), cmocka_unit_test(unread),
+        cmocka_unit_test(npz),         cmocka_unit_test(mat),
+        cmocka_unit_test(hdf5),        cmocka_unit_test(origin),
+        cmocka_unit_test(refusals),    cmocka_unit_test(streams),
+        cmocka_unit_test(seek),        cmocka_unit_test(cut),
+        cmocka_unit_test(changed),     cmocka_unit_test(checksum),
+        cmocka_unit_test(packed_bits), cmocka_unit_test(unread),
+        cmocka_unit_test(coded),       cmocka_unit_test(coded_otherwise),
+        cmocka_unit_test(holes),
     };
     return cmocka_run_group_tests(tests, set_up, clean_up);
 }

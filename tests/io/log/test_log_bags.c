@@ -72,6 +72,7 @@ static void test_files(void **state)
         check_rows(&t, 0, 1);
         assert_int_equal(t.findings.damaged, 0);
         assert_false(t.findings.cut_short || t.findings.received);
+        assert_int_equal(t.findings.other_frames, 0);
         CHECK_RELATIVE(t.findings.time_origin, (double)start / 1e9, 1e-15);
         /* Again from the first row, and from another place. */
         const imk_record_source source = imk_log_source(reader);
@@ -384,6 +385,45 @@ static void test_wrong_sum(void **state)
     free(bytes);
 }
 
+/* Messages of other frames than the first are rows as the others, are counted and named; the count
+ * begins anew with another place. */
+static void test_frames(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"none.bag", "unchunked.mcap", "single.db3"};
+    static const char *const other[] = {NULL, NULL, "le\tft!", NULL, "right!", "le\tft!"};
+    static bag_table t;
+    char path[256], copy[256];
+    for (size_t i = 0; i < 3; i++) {
+        imk_log_reader *reader;
+        imk_error error;
+        size_t size, met = 0;
+        path_of(files[i], path);
+        char *bytes = bag_bytes(path, &size);
+        for (size_t at = 0; at + 7 <= size; at++) {
+            if (memcmp(bytes + at, "sensor", 6) != 0 || bytes[at + 6] == '_')
+                continue;
+            if (met < sizeof other / sizeof other[0] && other[met])
+                memcpy(bytes + at, other[met], 6);
+            met++;
+        }
+        assert_int_equal(met, SAMPLES);
+        bag_save(bag_path(files[i], copy), bytes, size);
+        free(bytes);
+        CHECK_OK(imk_log_open(copy, NULL, &reader, &error));
+        for (int pass = 0; pass < 2; pass++) {
+            CHECK_OK(bag_read(reader, 4, &t, &error));
+            assert_int_equal(t.rows, SAMPLES);
+            check_rows(&t, 0, 1);
+            assert_int_equal(t.findings.other_frames, 3);
+            assert_string_equal(t.findings.frames, "\"sensor\", \"le?ft!\", \"right!\"");
+            CHECK_OK(imk_log_seek(reader, 0.0, &error));
+        }
+        imk_log_close(reader);
+        unlink(copy);
+    }
+}
+
 /* One bit of the header of a chunk or of a record in it: rows that are missing then are told. */
 static void test_header_bits(void **state)
 {
@@ -553,6 +593,7 @@ static void test_messages(void **state)
         const size_t size = imki_ros_imu_write((imki_ros_encoding)encoding, &imu, 7, data);
         assert_true(imki_ros_imu_read((imki_ros_encoding)encoding, data, size, &back));
         assert_true(back.stamp == imu.stamp);
+        assert_true(back.frame_size == 3 && memcmp(back.frame, "imu", 3) == 0);
         for (int k = 0; k < 2; k++) {
             assert_int_equal(back.has[k], imu.has[k]);
             for (int i = 0; i < 3 && back.has[k]; i++)
@@ -580,6 +621,7 @@ int main(void)
         cmocka_unit_test(test_no_seek_in_a_pipe),
         cmocka_unit_test(test_cut_short),
         cmocka_unit_test(test_wrong_sum),
+        cmocka_unit_test(test_frames),
         cmocka_unit_test(test_header_bits),
         cmocka_unit_test(test_any_byte),
         cmocka_unit_test(test_refusals),

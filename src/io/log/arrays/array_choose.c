@@ -262,6 +262,8 @@ static imk_status refuse_others(const imki_array_list *list, imk_error *error)
         {"compression", "write it with gzip, where its filter is installed: h5repack -f GZIP=4 IN "
                         "OUT"},
         {"another file", "write the values into the file itself"},
+        {"unclear", "state it as one number, a factor other than 0, of a dataset of numbers; "
+                    "or write the values themselves without it"},
         {"", "copy the file again, or write it with the usual compression"}};
     char found[96];
     const imki_array_other *other = &list->other[0];

@@ -24,8 +24,16 @@ typedef enum imki_value_type {
 enum {
     IMKI_ARRAYS_MAX = 1024, /* in a file */
     IMKI_ARRAY_DEPTH = 8,   /* groups within groups */
-    IMKI_ARRAY_LABELS = 1024
+    IMKI_ARRAY_LABELS = 1024,
+    IMKI_MISSING_MAX = 8 /* numbers that stand for no value */
 };
+
+/* How numbers stand for values: value = number * factor + offset, and some stand for none. */
+typedef struct imki_coding {
+    double factor, offset;
+    uint64_t missing[IMKI_MISSING_MAX]; /* their bits, in the type of the array */
+    uint64_t missing_count;
+} imki_coding;
 
 /* A vector or matrix. */
 typedef struct imki_array {
@@ -39,6 +47,8 @@ typedef struct imki_array {
     uint64_t place;   /* byte of the first value in its source */
     uint64_t step[2]; /* bytes from a value to the next along each dimension */
     size_t source;    /* of the format */
+    bool coded;
+    imki_coding coding;
     /* Set by imki_arrays_choose(): */
     uint64_t rows;
     size_t parts; /* columns */

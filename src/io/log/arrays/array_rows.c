@@ -84,12 +84,51 @@ static void copy_cell(const imki_array_cell *cell, const unsigned char *at, int6
     }
 }
 
-/* The first time, if it is a whole number that others can be counted from. */
-static bool first_stamp(const imki_array_cell *cell, int64_t *first)
+static bool is_missing(const imki_array_cell *cell, const unsigned char *at)
 {
-    if (cell->type != IMKI_INT64 && cell->type != IMKI_UINT64)
+    const imki_coding *coding = cell->coding;
+    uint64_t number;
+    take(at, sizeof number, cell->swapped, &number);
+    for (size_t i = 0; i < coding->missing_count; i++) {
+        double real, none;
+        memcpy(&real, &number, sizeof real);
+        memcpy(&none, &coding->missing[i], sizeof none);
+        if (cell->type == IMKI_FLOAT64 ? real == none : number == coding->missing[i])
+            return true;
+    }
+    return false;
+}
+
+static bool is_scaled(const imki_array_cell *cell)
+{
+    return cell->coding && (cell->coding->factor != 1.0 || cell->coding->offset != 0.0);
+}
+
+/* Values for the numbers of a cell that are coded. */
+static void give_cell(const imki_array_cell *cell, const unsigned char *at, int64_t origin,
+                      double factor, double *out, size_t rows)
+{
+    const imki_coding *coding = cell->coding;
+    copy_cell(cell, at, origin, is_scaled(cell) ? 1.0 : factor, out, rows);
+    for (size_t i = 0; i < rows && coding; i++) {
+        if (is_missing(cell, at + i * cell->step))
+            out[i] = (double)NAN;
+        else if (is_scaled(cell))
+            out[i] = (out[i] * coding->factor + coding->offset) * factor;
+    }
+}
+
+/* The first time, if it is a whole number that others can be counted from. */
+static bool first_stamp(const imki_array_cell *cell, size_t rows, int64_t *first)
+{
+    if ((cell->type != IMKI_INT64 && cell->type != IMKI_UINT64) || is_scaled(cell))
         return false;
-    take(cell->at, sizeof *first, cell->swapped, first);
+    size_t row = 0;
+    while (cell->coding && row < rows && is_missing(cell, cell->at + row * cell->step))
+        row++;
+    if (row == rows)
+        return false;
+    take(cell->at + row * cell->step, sizeof *first, cell->swapped, first);
     return *first != INT64_MIN && (cell->type == IMKI_INT64 || *first >= 0);
 }
 
@@ -107,9 +146,9 @@ imk_status imki_array_rows_begin(imk_log_reader *reader, imk_error *error)
             continue;
         const double per_second = 1.0 / layout->factor[layout->time_column];
         int64_t first;
-        if (first_stamp(cell, &first) && per_second >= 1.0 && per_second <= 1e12)
+        if (first_stamp(cell, state->at_hand, &first) && per_second >= 1.0 && per_second <= 1e12)
             state->origin = imki_log_stamp_origin(reader, first, (int64_t)llround(per_second));
-        copy_cell(cell, cell->at, state->origin, 1.0, time, state->at_hand < 2 ? 1 : 2);
+        give_cell(cell, cell->at, state->origin, 1.0, time, state->at_hand < 2 ? 1 : 2);
     }
     return imki_log_first_rows(reader, state->rows, time, "the arrays have no rows",
                                "at least one row of numbers", error);
@@ -148,7 +187,7 @@ imk_status imki_array_rows_read(imk_log_reader *reader, size_t max_rows, double 
     for (size_t i = 0; i < layout->cell_count; i++) {
         const imki_array_cell *cell = &state->cell[i];
         if (layout->cell_column[i] >= 0)
-            copy_cell(cell, cell->at + skipped * cell->step,
+            give_cell(cell, cell->at + skipped * cell->step,
                       layout->cell_column[i] == layout->time_column ? state->origin : 0,
                       layout->cell_factor[i], out[i], count);
     }

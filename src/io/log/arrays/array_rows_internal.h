@@ -10,8 +10,9 @@
 typedef struct imki_array_cell {
     imki_value_type type;
     bool swapped;
-    const unsigned char *at; /* of the first row of the block */
-    size_t step;             /* bytes from row to row */
+    const imki_coding *coding; /* NULL: the numbers are the values; of values of 8 bytes only */
+    const unsigned char *at;   /* of the first row of the block */
+    size_t step;               /* bytes from row to row */
 } imki_array_cell;
 
 /* The first member of the state of a format. */

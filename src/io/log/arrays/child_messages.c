@@ -5,9 +5,19 @@
 #include "base/text_internal.h"
 #include "child_process_internal.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { MESSAGES_MAX = 8 * IMKI_ARRAYS_MAX }; /* in a list */
+
+/* Bytes that follow a message of a list; kinds that are none of it have those of a failure. */
+static size_t size_of(uint32_t kind)
+{
+    return kind == IMKI_MESSAGE_LISTED                               ? 0
+           : kind == IMKI_MESSAGE_CODING                             ? sizeof(imki_coding)
+           : kind == IMKI_MESSAGE_ARRAY || kind == IMKI_MESSAGE_UNIT ? sizeof(imki_array_message)
+                                                                     : sizeof(imki_array_other);
+}
 
 static bool receive_array(int socket, bool unit, imki_array_list *list, imk_status *status,
                           imk_error *error)
@@ -31,6 +41,19 @@ static bool receive_array(int socket, bool unit, imki_array_list *list, imk_stat
     imki_copy_text(array.labels, sizeof array.labels, said.labels);
     memcpy(array.extent, said.extent, sizeof array.extent);
     *status = imki_array_add(list, &array, error);
+    return true;
+}
+
+static bool receive_coding(int socket, imki_array_list *list)
+{
+    imki_coding said;
+    if (!imki_socket_receive(socket, &said, sizeof said) || list->count == 0 ||
+        said.missing_count > IMKI_MISSING_MAX || !isfinite(said.factor) || said.factor == 0.0 ||
+        !isfinite(said.offset))
+        return false;
+    imki_array *array = &list->array[list->count - 1];
+    array->coded = true;
+    array->coding = said;
     return true;
 }
 
@@ -60,20 +83,28 @@ bool imki_child_list(int socket, imki_array_list *list, imk_status *status, imk_
         imki_array_other other;
         if (!imki_socket_receive(socket, &message, sizeof message))
             return false;
-        const bool array = message.kind == IMKI_MESSAGE_ARRAY || message.kind == IMKI_MESSAGE_UNIT;
-        if (message.kind == IMKI_MESSAGE_LISTED)
-            return message.size == 0;
-        if (message.size != (array ? sizeof(imki_array_message) : sizeof other))
+        if (message.size != size_of(message.kind))
             return false;
-        if (array) {
+        switch (message.kind) {
+        case IMKI_MESSAGE_LISTED:
+            return true;
+        case IMKI_MESSAGE_ARRAY:
+        case IMKI_MESSAGE_UNIT:
             if (!receive_array(socket, message.kind == IMKI_MESSAGE_UNIT, list, status, error))
                 return false;
-        } else if (message.kind == IMKI_MESSAGE_OTHER) {
+            break;
+        case IMKI_MESSAGE_CODING:
+            if (!receive_coding(socket, list))
+                return false;
+            break;
+        case IMKI_MESSAGE_OTHER:
             if (!receive_other(socket, &other))
                 return false;
             imki_array_note(list, other.name, other.kind);
-        } else
+            break;
+        default:
             return message.kind == IMKI_MESSAGE_FAILED && receive_failure(socket, status, error);
+        }
     }
     return *status != IMK_OK;
 }

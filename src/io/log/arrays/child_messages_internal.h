@@ -17,7 +17,8 @@ enum {
     IMKI_MESSAGE_OTHER,     /* an imki_array_other */
     IMKI_MESSAGE_LISTED,    /* that was all */
     IMKI_MESSAGE_ROWS,      /* values of 8 bytes, column after column */
-    IMKI_MESSAGE_FAILED     /* an imki_array_other: what was found, what to do; "": no memory */
+    IMKI_MESSAGE_FAILED,    /* an imki_array_other: what was found, what to do; "": no memory */
+    IMKI_MESSAGE_CODING     /* an imki_coding, of the array before */
 };
 
 typedef struct imki_array_message {

@@ -50,8 +50,7 @@ static void note(walk *w, const char *path, const char *kind)
     say(w, IMKI_MESSAGE_OTHER, &other, sizeof other);
 }
 
-/* @return false: no numbers */
-static bool find_type(hid_t type, imki_value_type *found)
+bool imki_hdf5_type(hid_t type, imki_value_type *found)
 {
     const H5T_class_t class = H5Tget_class(type);
     if (class != H5T_FLOAT && class != H5T_INTEGER)
@@ -77,6 +76,17 @@ static void send_array(walk *w, const imki_hdf5_array *array, imki_array_message
     say(w, IMKI_MESSAGE_ARRAY, message, sizeof *message);
 }
 
+/* @return false: how its values are coded cannot be read, which is noted */
+static bool find_coding(walk *w, hid_t dataset, const imki_hdf5_array *array, bool *coded,
+                        imki_coding *coding)
+{
+    char obstacle[64];
+    *coded = imki_hdf5_coding(dataset, array, coding, sizeof obstacle, obstacle);
+    if (obstacle[0])
+        note(w, array->path, obstacle);
+    return obstacle[0] == '\0';
+}
+
 /* Line `index` of texts. */
 static void take_line(const char *texts, size_t index, size_t size, char *line)
 {
@@ -93,6 +103,10 @@ static void send_numbers(walk *w, hid_t dataset, const imki_hdf5_array *array,
                          imki_array_message *message)
 {
     char units[IMKI_ARRAY_LABELS], names[IMKI_ARRAY_LABELS], name[64], unit[40];
+    imki_coding coding;
+    bool coded;
+    if (!find_coding(w, dataset, array, &coded, &coding))
+        return;
     const size_t count = imki_hdf5_texts(dataset, unit_names, sizeof units, units);
     const size_t named = imki_hdf5_texts(dataset, label_names, sizeof names, names);
     if (count == 1)
@@ -109,6 +123,8 @@ static void send_numbers(walk *w, hid_t dataset, const imki_hdf5_array *array,
         imki_append_text(message->labels, sizeof message->labels, "\n");
     }
     send_array(w, array, message);
+    if (coded)
+        say(w, IMKI_MESSAGE_CODING, &coding, sizeof coding);
 }
 
 /* The members of records. */
@@ -116,8 +132,13 @@ static void send_members(walk *w, hid_t dataset, hid_t type, imki_hdf5_array *ar
                          const char *path)
 {
     char units[IMKI_ARRAY_LABELS];
+    imki_coding coding;
+    bool coded;
     const int members = H5Tget_nmembers(type);
     const size_t count = imki_hdf5_texts(dataset, unit_names, sizeof units, units);
+    array->member = 0;
+    if (!find_coding(w, dataset, array, &coded, &coding))
+        return;
     for (int i = 0; i < members && !w->gone; i++) {
         imki_array_message message;
         memset(&message, 0, sizeof message);
@@ -128,7 +149,7 @@ static void send_members(walk *w, hid_t dataset, hid_t type, imki_hdf5_array *ar
         const bool simple =
             !list || (H5Tget_array_ndims(member) == 1 && H5Tget_array_dims2(member, &parts) >= 0);
         char *name = H5Tget_member_name(type, (unsigned)i);
-        if (simple && name && find_type(value, &array->type)) {
+        if (simple && name && imki_hdf5_type(value, &array->type)) {
             imki_copy_text(message.group, sizeof message.group, path);
             imki_copy_text(message.name, sizeof message.name, name);
             if (count == (size_t)members)
@@ -245,9 +266,9 @@ static void visit_dataset(walk *w, hid_t dataset, const char *path)
     array.extent[0] = extent[array.flipped];
     array.extent[1] = extent[!array.flipped];
     const bool records = H5Tget_class(type) == H5T_COMPOUND && array.rank == 1 && !is_complex(type);
-    const bool unread = !fits || (numbers && !records && !find_type(type, &array.type));
+    const bool unread = !fits || (numbers && !records && !imki_hdf5_type(type, &array.type));
     char kind[64];
-    const char *obstacle = numbers && (records || find_type(type, &array.type))
+    const char *obstacle = numbers && (records || imki_hdf5_type(type, &array.type))
                                ? imki_hdf5_obstacle(dataset, values, w->file_size)
                                : NULL;
     if (obstacle)
@@ -256,7 +277,7 @@ static void visit_dataset(walk *w, hid_t dataset, const char *path)
         note(w, path, kind);
     else if (numbers && records)
         send_members(w, dataset, type, &array, path);
-    else if (numbers && find_type(type, &array.type))
+    else if (numbers && imki_hdf5_type(type, &array.type))
         send_numbers(w, dataset, &array, &message);
     H5Tclose(type);
     H5Sclose(space);

@@ -41,6 +41,14 @@ void imki_hdf5_fail(int socket, const char *found, const char *expected);
 
 /* Texts of an attribute, one a line. @return how many; 0: there is none, or it holds none */
 size_t imki_hdf5_texts(hid_t object, const char *const *names, size_t size, char *texts);
+/* Type of an array of such numbers. @return false: no numbers */
+bool imki_hdf5_type(hid_t type, imki_value_type *found);
+/* Their type in memory. */
+hid_t imki_hdf5_memory_type(imki_value_type type);
+/* How the numbers of a dataset are coded. @return false: not at all, or the obstacle says which
+ * attribute cannot be read ("": none) */
+bool imki_hdf5_coding(hid_t dataset, const imki_hdf5_array *array, imki_coding *coding, size_t size,
+                      char *obstacle);
 /* What stands in the way of reading the values of a dataset, and what to do; NULL: nothing. */
 const char *imki_hdf5_obstacle(hid_t dataset, uint64_t values, uint64_t file_size);
 

@@ -51,7 +51,7 @@ void imki_hdf5_fail(int socket, const char *found, const char *expected)
         imki_socket_send(socket, &said, sizeof said);
 }
 
-static hid_t type_of(imki_value_type type)
+hid_t imki_hdf5_memory_type(imki_value_type type)
 {
     return type == IMKI_INT64    ? H5T_NATIVE_INT64
            : type == IMKI_UINT64 ? H5T_NATIVE_UINT64
@@ -95,8 +95,8 @@ static bool add_member(source *from, const imki_hdf5_array *array, size_t *offse
     const hid_t whole = H5Dget_type(from->dataset);
     char *name = H5Tget_member_name(whole, (unsigned)array->member);
     const hsize_t parts = array->extent[1];
-    const hid_t value = parts > 1 ? H5Tarray_create2(type_of(array->type), 1, &parts)
-                                  : H5Tcopy(type_of(array->type));
+    const hid_t value = parts > 1 ? H5Tarray_create2(imki_hdf5_memory_type(array->type), 1, &parts)
+                                  : H5Tcopy(imki_hdf5_memory_type(array->type));
     bool added = true;
     const int there = name ? H5Tget_member_index(from->type, name) : -1;
     if (there >= 0)
@@ -123,8 +123,8 @@ static bool find_source(service *s, column *c)
     source *from = &s->source[i];
     if (i == s->sources) {
         *from = (source){.array = array, .dataset = open_dataset(s, array), .parts = 1};
-        from->type =
-            array->member >= 0 ? H5Tcreate(H5T_COMPOUND, 1) : H5Tcopy(type_of(array->type));
+        from->type = array->member >= 0 ? H5Tcreate(H5T_COMPOUND, 1)
+                                        : H5Tcopy(imki_hdf5_memory_type(array->type));
         s->sources++;
         if (from->dataset < 0 || from->type < 0)
             return false;

@@ -98,7 +98,8 @@ static imk_status begin_rows(imk_log_reader *reader, imk_error *error)
     for (size_t i = 0; i < reader->layout.cell_count; i++) {
         const imki_array *array = &state->rows.list.array[state->rows.column[i].array];
         state->columns += reader->layout.cell_column[i] >= 0;
-        state->rows.cell[i] = (imki_array_cell){.type = array->type, .step = VALUE};
+        state->rows.cell[i] = (imki_array_cell){
+            .type = array->type, .coding = array->coded ? &array->coding : NULL, .step = VALUE};
     }
     state->values = malloc(state->columns * BLOCK_ROWS * VALUE);
     if (!state->values)

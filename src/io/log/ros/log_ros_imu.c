@@ -83,6 +83,8 @@ static bool read_ros1(const uint8_t *data, size_t size, imki_imu *imu)
     if (size < FIXED || imki_get_u32(data + 12) != size - FIXED)
         return false;
     imu->stamp = (int64_t)imki_get_u32(data + 4) * BILLION + imki_get_u32(data + 8);
+    imu->frame = data + 16;
+    imu->frame_size = size - FIXED;
     read_values(data + size - 8 * DOUBLES, false, imu);
     return true;
 }
@@ -102,6 +104,8 @@ static bool read_cdr(const uint8_t *data, size_t size, imki_imu *imu)
         return false;
     /* The seconds have a sign. */
     imu->stamp = (int64_t)(int32_t)get(fields) * BILLION + get(fields + 4);
+    imu->frame = fields + 12;
+    imu->frame_size = text > 0 ? text - 1 : 0;
     read_values(fields + begin, big, imu);
     return true;
 }

@@ -16,7 +16,9 @@ typedef enum imki_ros_encoding {
 
 /* What is read of a message. */
 typedef struct imki_imu {
-    int64_t stamp;      /* header.stamp [ns] */
+    int64_t stamp;        /* header.stamp [ns] */
+    const uint8_t *frame; /* header.frame_id, in the message */
+    size_t frame_size;
     bool has[2];        /* angular rate, specific force: the first covariance is not -1 */
     double value[2][3]; /* [rad/s], [m/s^2] */
 } imki_imu;

@@ -13,7 +13,8 @@ enum {
     IMKI_ROS_LOOK = 16,             /* messages of a topic that tell what it has */
     IMKI_ROS_LOOK_BYTES = 16 << 20, /* of a log without index that are looked at for topics */
     IMKI_ROS_RECORD_MAX = 1 << 30,  /* bytes of a chunk or message */
-    IMKI_ROS_MESSAGE_MAX = 1 << 20  /* bytes of an Imu message that is compressed by itself */
+    IMKI_ROS_MESSAGE_MAX = 1 << 20, /* bytes of an Imu message that is compressed by itself */
+    IMKI_ROS_FRAME = 64             /* bytes of a frame that are compared with another */
 };
 
 /* A message as it stands in the log. */
@@ -78,8 +79,12 @@ struct imki_ros_log {
     bool by_receipt; /* stamps are all 0: the times are those of recording */
     bool has[2];     /* gyro, accel */
     int64_t origin;  /* [ns] */
-    size_t rows;     /* of the present call, for the place of damage */
-    bool packed;     /* each message is compressed by zstd */
+    bool frame_known;
+    uint8_t frame[IMKI_ROS_FRAME]; /* of the first message that is read */
+    size_t frame_size;
+    uint64_t frame_mask; /* bytes of the first eight that are of the frame */
+    size_t rows;         /* of the present call, for the place of damage */
+    bool packed;         /* each message is compressed by zstd */
     uint8_t *unpacked;
     void *unpacker;
 };
@@ -123,6 +128,26 @@ imk_status imki_ros_open(imki_ros_log *log, imk_error *error);
 imk_status imki_ros_read(imk_log_reader *reader, size_t max_rows, double *const *out, size_t *rows,
                          imk_error *error);
 void imki_ros_close(imki_ros_log *log);
+
+/* ---- log_ros_frames.c ------------------------------------------------------------------------ */
+
+static inline size_t imki_ros_frame_compared(const imki_imu *imu)
+{
+    return imu->frame_size < IMKI_ROS_FRAME ? imu->frame_size : IMKI_ROS_FRAME;
+}
+
+/* Is the frame of a message that of the first one? Short ones without a call; behind a frame there
+ * are more than eight bytes of numbers. */
+static inline bool imki_ros_frame_is_first(const imki_ros_log *log, const imki_imu *imu)
+{
+    const uint64_t bytes = (imki_get_u64(imu->frame) ^ imki_get_u64(log->frame)) & log->frame_mask;
+    return (bytes | (imu->frame_size ^ log->frame_size)) == 0 && log->frame_known &&
+           (imu->frame_size <= 8 ||
+            memcmp(imu->frame, log->frame, imki_ros_frame_compared(imu)) == 0);
+}
+
+/* The first frame, or another one: count it. */
+void imki_ros_frame_note(imki_ros_log *log, const imki_imu *imu);
 
 /* ---- log_ros_records.c ----------------------------------------------------------------------- */
 

@@ -201,14 +201,22 @@ imk_status imki_ros_open(imki_ros_log *log, imk_error *error)
 
 /* ---- rows ---- */
 
+static void ask_for(const imk_log_stream *stream, size_t size, char *text)
+{
+    const int used = snprintf(text, size, "--topic %.96s", stream->name);
+    if (stream->instance >= 0)
+        snprintf(text + used, size - (size_t)used, " --instance %d", stream->instance);
+}
+
 /* A second sensor that was not there at the beginning: which one is meant is not known. */
 static imk_status refuse_second(const imki_ros_log *log, const imki_ros_topic *other,
                                 imk_error *error)
 {
-    char found[96], expected[256];
+    char found[96], expected[280], one[128], two[128];
     snprintf(found, sizeof found, "a second sensor, %.64s, begins later", other->stream.name);
-    snprintf(expected, sizeof expected, "add --topic %.96s (or --topic %.96s)",
-             log->topics[log->topic].stream.name, other->stream.name);
+    ask_for(&log->topics[log->topic].stream, sizeof one, one);
+    ask_for(&other->stream, sizeof two, two);
+    snprintf(expected, sizeof expected, "add %s (or %s)", one, two);
     return imk_error_set(error, IMK_ERROR_NAME_UNKNOWN, "topic", found, expected);
 }
 
@@ -257,6 +265,8 @@ imk_status imki_ros_read(imk_log_reader *reader, size_t max_rows, double *const 
             imki_log_damage(reader, log->rows);
             continue;
         }
+        if (!imki_ros_frame_is_first(log, &imu))
+            imki_ros_frame_note(log, &imu);
         put_row(log, &imu, message.received, out, log->rows++);
     }
     *rows = log->rows;

@@ -44,6 +44,24 @@ static imk_status refuse_number(imk_error *error)
                          "a log of fewer topics, as rosbag filter or mcap filter writes");
 }
 
+/* Topics that are called alike, of which messages are in two encodings, are told apart by number.
+ */
+static void number_alike(imki_ros_log *log, imki_ros_topic *made)
+{
+    if (made->encoding == IMKI_ROS_OTHER)
+        return;
+    for (size_t i = log->topic_count; i-- > 0;) {
+        imk_log_stream *other = &log->topics[i].stream;
+        if (log->topics[i].encoding == IMKI_ROS_OTHER ||
+            strcmp(other->name, made->stream.name) != 0)
+            continue;
+        if (other->instance < 0)
+            other->instance = 0;
+        made->stream.instance = other->instance + 1;
+        return;
+    }
+}
+
 imk_status imki_ros_topic_add(imki_ros_log *log, imki_log_piece name, imki_log_piece type,
                               imki_ros_encoding encoding, uint32_t *topic, imk_error *error)
 {
@@ -62,11 +80,13 @@ imk_status imki_ros_topic_add(imki_ros_log *log, imki_log_piece name, imki_log_p
         log->topics = larger;
         log->topic_room = room;
     }
-    imki_ros_topic *made = &log->topics[log->topic_count++];
+    imki_ros_topic *made = &log->topics[log->topic_count];
     *made = (imki_ros_topic){.hash = hash, .encoding = encoding};
     made->stream = (imk_log_stream){.instance = -1, .begin = (double)NAN, .end = (double)NAN};
     copy_text(name, made->stream.name, sizeof made->stream.name);
     copy_text(type, made->stream.kind, sizeof made->stream.kind);
+    number_alike(log, made);
+    log->topic_count++;
     return IMK_OK;
 }
 

@@ -127,6 +127,32 @@ with hdf5("virtual.h5") as f:
     layout[:] = h5py.VirtualSource("chunked.h5", "t", (N,))
     f.create_virtual_dataset("gyro_x", layout)
 
+# Numbers that stand for values, as netCDF files have them; attributes that are no numbers.
+with hdf5("coded.h5") as f:
+    def coded(path, data, unit, **attributes):
+        dataset = f.create_dataset(path, data=data)
+        dataset.attrs["units"] = unit
+        for name, value in attributes.items():
+            dataset.attrs[name] = value
+    coded("scaled/t", i.astype("i4"), "s", scale_factor=1 / 64)
+    coded("scaled/gyro", (7 * i[:, None] + 3 * k).astype(">i2"), "rad/s",
+          scale_factor=np.array([1 / 1024], "f4"), add_offset=-50 / 1024, _FillValue=np.int16(-1))
+    coded("scaled/accel", (accel / 2).T.astype("f4"), "m/s^2", scale_factor=2)
+    times, rates, forces = stamps.copy(), gyro.astype("f4"), (accel * 512).astype("i4")
+    times[0] = times[5] = -2**63 + 2
+    rates[3, 1], rates[4, 0], forces[7, 2], forces[8] = 1e20, -9999, -2**31, 77
+    coded("holes/t", times, "ns", _FillValue=np.int64(-2**63 + 2))
+    coded("holes/gyro", rates, "rad/s", _FillValue=1e20, missing_value=np.array([-9999, 1e20]))
+    coded("holes/accel", forces, "m/s^2", scale_factor=1 / 512, missing_value=77.0,
+          _FillValue=np.int32(-2**31))
+    coded("text/t", t, "s")
+    coded("text/gyro", gyro, "rad/s", _FillValue=np.nan)
+    coded("text/accel", accel, "m/s^2", scale_factor="0.5")
+    coded("list/t", t, "s")
+    coded("list/accel", accel, "m/s^2", missing_value=1 << 60)
+    coded("list/gyro", gyro, "rad/s", scale_factor=[1., 2., 3.])
+    coded("table", table, ["s", "rad/s", "m/s^2"], add_offset=1.0)
+
 # What save -v7.3 of MATLAB makes: a head in front, and what the numbers are in attributes.
 with hdf5("matlab.mat", userblock_size=512) as f:
     def put(group, name, data, kind="double"):
