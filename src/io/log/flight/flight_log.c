@@ -274,7 +274,7 @@ imk_status imki_flight_seek(imk_log_reader *reader, double fraction, imk_error *
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "",
                              "in a pipe and in compressed data there is no way to another place",
                              "write it to a plain file");
-    if (log->redefined)
+    if (log->redefined && fraction > 0)
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "",
                              "the log gives its messages other fields on the way",
                              "read it from its beginning");
