@@ -100,8 +100,13 @@ typedef struct imk_log_findings {
     size_t damaged_line, damaged_column; /**< of the first in a text, from 1; 0: not known */
     size_t headers, first_header;        /**< lines between the rows of a text that are its header
                                             once more; rows before the first */
-    bool cut_short; /**< the file ends within a row, message or block, which is left out */
-    bool received;  /**< the times are those of recording: no message says when it was measured */
+    bool cut_short;  /**< the file ends within a row, message or block, which is left out */
+    bool received;   /**< the times are those of recording: the first messages do not say when they
+                          were measured */
+    uint64_t stamps; /**< messages that do, if `received` */
+    /** Messages of the sensor with what its first ones do not have, and which is not read: gyros,
+     *  accelerometers, a temperature. */
+    uint64_t later[3];
     /** Sampling interval of the device that the log names, for increments of single samples [s];
      *  0: not known. */
     double device_interval;
@@ -112,6 +117,12 @@ typedef struct imk_log_findings {
     /** Messages whose header.frame_id is not that of the first one; the frames, in quotes. */
     size_t other_frames;
     char frames[96];
+    /** Messages of the sensor that an index of the log states and that are not in it, of how many;
+     *  known behind the last row. */
+    uint64_t absent, stated;
+    bool unclosed;   /**< the last messages may be in a file beside the log, which is not there */
+    size_t unlisted; /**< files of a folder that its list of files does not name; the first */
+    char unlisted_name[56];
 } imk_log_findings;
 
 /** Where the rows of a record come from. A function that the source does not offer is NULL. */

@@ -93,14 +93,27 @@ static const struct message {
     {"cut_short", "the file ends in the middle of a row, message or block, or its last line has no "
                   "end and may be cut; what is whole, {0} row{0s}, is used; if the file is a copy, "
                   "copy it again"},
-    {"received", "the stamps of the messages are all 0; the times at which they were recorded are "
-                 "used, which have the jitter of their way"},
+    {"received", "{0?}the stamps of the first messages are 0, and of {0} later one{0s} they are "
+                 "not; for all of them {?}{0!}the stamps of the messages are all 0; {?}the times "
+                 "at which they were recorded are used, which have the jitter of their way"},
+    {"later", "{0} message{0s} of the sensor hold {name}, which its first messages do not: not "
+              "read, because the first ones decide the columns; a log that begins with such "
+              "messages has them"},
     {"decimated", "the log has {0.4g} increments per second, and its device makes {1.4g}: those "
                   "that are not recorded are missing, and rates and forces are too low by up to a "
                   "factor of {2.3g}; record every message"},
     {"uneven_increments", "each increment is divided by its own step of the time, and the steps "
                           "scatter by {0.2g} %: if the samples are even and only the times are "
                           "coarse or late, state --rate"},
+    {"absent", "{0} of the {1} messages that the log says it has of this sensor are not in it, "
+               "or in files that are missing; copy it again, with all of its files"},
+    {"unclosed", "the database is in the mode of a write-ahead log, and does not say how many "
+                 "messages it has: if it was copied before it was closed, the last ones are in the "
+                 "file with -wal behind its name, which is not here"},
+    {"unlisted",
+     "the folder has {0} more file{0s}, which its metadata.yaml does not name: not read, the first "
+     "is {name}; if they are of this log, write the list anew: ros2 bag reindex "
+     "FOLDER"},
     {"unread", "{0} array{0s} of the file cannot be read: left out, the first is {name}, a "
                "{other}; if a sensor is in it, write it as a vector or matrix of numbers"},
     {"frames", "the messages of the topic name several frames, {name}; {0} of {1} have another "

@@ -451,6 +451,8 @@ imk_status imk_log_seek(imk_log_reader *reader, double fraction, imk_error *erro
     reader->damaged_line = reader->damaged_column = 0;
     reader->headers = reader->first_header = 0;
     reader->other_frames = 0;
+    reader->absent = reader->stated = reader->stamps = 0;
+    memset(reader->later, 0, sizeof reader->later);
     reader->failed = reader->cut_short = false;
     return IMK_OK;
 }
@@ -478,8 +480,15 @@ imk_log_findings imk_log_findings_get(const imk_log_reader *reader)
     found.first_header = reader->first_header;
     found.cut_short = reader->cut_short;
     found.received = reader->received;
+    found.stamps = reader->stamps;
+    memcpy(found.later, reader->later, sizeof found.later);
     found.device_interval = reader->device_interval;
     found.unread = reader->unread;
+    found.absent = reader->absent;
+    found.stated = reader->stated;
+    found.unclosed = reader->unclosed;
+    found.unlisted = reader->unlisted;
+    memcpy(found.unlisted_name, reader->unlisted_name, sizeof found.unlisted_name);
     memcpy(found.unread_name, reader->unread_name, sizeof found.unread_name);
     memcpy(found.unread_kind, reader->unread_kind, sizeof found.unread_kind);
     found.other_frames = reader->other_frames;

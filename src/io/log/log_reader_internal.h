@@ -151,11 +151,16 @@ struct imk_log_reader {
     char unread_name[56], unread_kind[40];
     size_t other_frames; /* messages of another frame than the first; all frames */
     char frames[96];
-    bool received;      /* the times are those of recording, as the stamps are all 0 */
-    double rate;        /* [Hz]; 0: from the times */
-    double time_origin; /* in the unit of the file */
-    double last_time;   /* [s] */
-    double usual_step;  /* [s], of the times so far, for increments */
+    uint64_t absent, stated; /* as in imk_log_findings, and so the next */
+    bool unclosed;
+    size_t unlisted;
+    char unlisted_name[56];
+    bool received;             /* the times are those of recording, as the first stamps are 0 */
+    uint64_t stamps, later[3]; /* as in imk_log_findings */
+    double rate;               /* [Hz]; 0: from the times */
+    double time_origin;        /* in the unit of the file */
+    double last_time;          /* [s] */
+    double usual_step;         /* [s], of the times so far, for increments */
     unsigned even_steps;
     double device_interval; /* [s], of the device that the log names; 0: not known */
     size_t rows, not_finite, first_not_finite;

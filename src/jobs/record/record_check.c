@@ -83,6 +83,7 @@ imk_status imki_source_findings(const imk_record_source *source, size_t rows, do
 
 void imki_tell_manner(const imk_record_source *source, imk_findings *findings)
 {
+    static const char *const what[3] = {"gyros", "accelerometers", "a temperature"};
     if (!source->findings)
         return;
     const imk_log_findings f = source->findings(source->context);
@@ -94,11 +95,23 @@ void imki_tell_manner(const imk_record_source *source, imk_findings *findings)
         imki_find(findings, IMK_FINDING_WARNING, "uneven_increments", NULL,
                   IMKI_NUMBERS(100 * scatter));
     if (f.received)
-        imki_find(findings, IMK_FINDING_WARNING, "received", NULL, 0, NULL);
+        imki_find(findings, IMK_FINDING_WARNING, "received", NULL, IMKI_NUMBERS((double)f.stamps));
+    for (int i = 0; i < 3; i++)
+        if (f.later[i] > 0)
+            imki_find(findings, IMK_FINDING_WARNING, "later", what[i],
+                      IMKI_NUMBERS((double)f.later[i]));
     if (f.device_interval > 0 && f.interval > 1.5 * f.device_interval)
         imki_find(
             findings, IMK_FINDING_WARNING, "decimated", NULL,
             IMKI_NUMBERS(1 / f.interval, 1 / f.device_interval, f.interval / f.device_interval));
+    if (f.absent > 0)
+        imki_find(findings, IMK_FINDING_WARNING, "absent", NULL,
+                  IMKI_NUMBERS((double)f.absent, (double)f.stated));
+    if (f.unclosed)
+        imki_find(findings, IMK_FINDING_WARNING, "unclosed", NULL, 0, NULL);
+    if (f.unlisted > 0)
+        imki_find(findings, IMK_FINDING_WARNING, "unlisted", f.unlisted_name,
+                  IMKI_NUMBERS((double)f.unlisted));
     if (f.unread > 0) {
         char both[96];
         snprintf(both, sizeof both, "%s\t%s", f.unread_name, f.unread_kind);

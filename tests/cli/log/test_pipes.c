@@ -122,6 +122,24 @@ static void test_same_from_pipes(void **state)
     }
 }
 
+/* Formats that are not read in one go are read from the copy. */
+static void test_formats_that_need_a_file(void **state)
+{
+    (void)state;
+    static char expected[TEXT_SIZE];
+    assert_int_equal(run("$I identify one.csv --name x -o - 2>/dev/null | grep -v source"), 0);
+    memcpy(expected, out, sizeof expected);
+    static const char *const endings[] = {"h5", "mat", "npz"};
+    for (size_t i = 0; i < 3; i++) {
+        setenv("E", endings[i], 1);
+        assert_int_equal(
+            run("$I convert one.csv copied.$E && "
+                "cat copied.$E | $I identify - --name x -o - 2>/dev/null | grep -v source"),
+            0);
+        assert_string_equal(out, expected);
+    }
+}
+
 /* The copy that identify and evaluate need has no room: a message, and no result of a part. */
 static void test_copy_that_fails(void **state)
 {
@@ -329,10 +347,15 @@ static void test_one_stream_one_text(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_from_pipes),      cmocka_unit_test(test_copy_that_fails),
-        cmocka_unit_test(test_streams_stay_streams), cmocka_unit_test(test_same_to_pipes),
-        cmocka_unit_test(test_closed_pipe),          cmocka_unit_test(test_without_end),
-        cmocka_unit_test(test_formats_that_seek),    cmocka_unit_test(test_one_stream_one_text),
+        cmocka_unit_test(test_same_from_pipes),
+        cmocka_unit_test(test_copy_that_fails),
+        cmocka_unit_test(test_streams_stay_streams),
+        cmocka_unit_test(test_same_to_pipes),
+        cmocka_unit_test(test_closed_pipe),
+        cmocka_unit_test(test_without_end),
+        cmocka_unit_test(test_formats_that_need_a_file),
+        cmocka_unit_test(test_formats_that_seek),
+        cmocka_unit_test(test_one_stream_one_text),
     };
     return cmocka_run_group_tests(tests, make_inputs, remove_inputs);
 }

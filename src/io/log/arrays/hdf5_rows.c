@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { VALUE = 8, ROWS_MAX = 1 << 14 };
 static const size_t cache_usual = 1 << 20, cache_most = (size_t)256 << 20; /* bytes */
@@ -237,10 +238,14 @@ void imki_hdf5_give_rows(const imki_hdf5_list *list)
     free(s);
 }
 
+/* The usual driver of libhdf5 asks for the real path, which the copy of a pipe does not have. */
 static hid_t open_file(int number)
 {
     char path[32];
+    struct stat about;
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    if (fstat(number, &about) == 0 && about.st_nlink == 0)
+        H5Pset_fapl_stdio(access);
     snprintf(path, sizeof path, "/dev/fd/%d", number);
 #if H5_VERSION_GE(1, 10, 7)
     H5Pset_file_locking(access, false, true);

@@ -54,25 +54,75 @@ static bool is_sound(const imki_dataflash_format *format)
     return length == format->length;
 }
 
-bool imki_dataflash_define(imki_dataflash *flash, const char *message)
+/* Has each field a name? */
+static bool is_named(const imki_dataflash_format *format)
 {
-    imki_dataflash_format *format = &flash->format[(unsigned char)message[3]];
+    size_t names = 1;
+    for (const char *at = format->labels; *at; at++)
+        names += *at == ',';
+    return names == strlen(format->types);
+}
+
+/* Logs put together begin with an FMT for FMT each; where there is none, FMTs stand together. */
+static void note_joint(imki_dataflash *flash, int number, uint64_t place)
+{
+    const bool head = number == IMKI_DATAFLASH_FMT && place > flash->log.begin;
+    if (head || (!flash->joined && !flash->defining))
+        flash->joint = place;
+    flash->joined |= head;
+    flash->defining = true;
+}
+
+/* The plans that are made by a number are to be made anew. */
+static void unplan(imki_dataflash *flash, int number)
+{
+    for (int i = 0; i < IMKI_DATAFLASH_SENSORS; i++)
+        if (flash->planned[i] == number + 1)
+            flash->planned[i] = 0;
+}
+
+bool imki_dataflash_define(imki_dataflash *flash, const char *message, uint64_t place, bool learns)
+{
+    const int number = (unsigned char)message[3];
+    imki_dataflash_format *format = &flash->format[number];
     imki_dataflash_format made = {.length = (unsigned char)message[4], .sensor = -1};
+    note_joint(flash, number, place);
+    made.number = number;
+    made.place = place;
+    made.joint = flash->joint;
     copy_text(message + 5, 4, made.name);
     copy_text(message + 9, IMKI_DATAFLASH_FIELDS, made.types);
     copy_text(message + 25, 64, made.labels);
-    if (format->name[0])
-        return format->length == made.length && strcmp(format->name, made.name) == 0 &&
-               strcmp(format->labels, made.labels) == 0;
-    if (!made.name[0] || made.length < IMKI_DATAFLASH_HEADER ||
-        (format->length > 0 && format->length != made.length))
-        return false;
-    if (!is_sound(&made)) /* the messages can be passed over, but not read */
+    const bool sound = is_sound(&made);
+    if (!sound) /* the messages can be passed over, but not read */
         made.types[0] = '\0';
+    const bool known = format->name[0] != '\0';
+    if (known && format->length == made.length && strcmp(format->name, made.name) == 0 &&
+        strcmp(format->types, made.types) == 0 && strcmp(format->labels, made.labels) == 0)
+        return true;
+    if (!made.name[0] || made.length < IMKI_DATAFLASH_HEADER ||
+        (number == IMKI_DATAFLASH_FMT ? known || made.length != format->length
+                                      : known && (!sound || !is_named(&made))))
+        return !learns;
+    if (!known && !learns)
+        return true;
     made.sensor = imki_dataflash_sensor(made.name);
     made.instance = imki_dataflash_field(&made, "I", NULL);
     *format = made;
+    if (known)
+        flash->log.redefined = true;
+    else
+        flash->first[number] = made;
+    unplan(flash, number);
     return true;
+}
+
+void imki_dataflash_restore(imki_dataflash *flash)
+{
+    memcpy(flash->format, flash->first, sizeof flash->format);
+    memset(flash->planned, 0, sizeof flash->planned);
+    flash->joint = 0;
+    flash->joined = flash->defining = false;
 }
 
 /* @return the letter of the field, NULL: there is none */
@@ -111,6 +161,28 @@ static const char *text_field(const imki_dataflash_format *format, const char *l
     return type && type->letter == letter ? message + place : NULL;
 }
 
+/* Is it what the same FMT said? */
+static bool is_same(const imki_dataflash_format *a, const imki_dataflash_format *b)
+{
+    return a->number == b->number && a->place == b->place;
+}
+
+static void learn_fields(imki_dataflash *flash, int number, const char *units,
+                         const char *multipliers)
+{
+    imki_dataflash_format *of = &flash->format[number], *first = &flash->first[number];
+    if (is_same(of, first) && !flash->log.surveying)
+        return;
+    copy_text(units, IMKI_DATAFLASH_FIELDS, of->units);
+    copy_text(multipliers, IMKI_DATAFLASH_FIELDS, of->multipliers);
+    if (is_same(of, first))
+        *first = *of;
+    for (int i = 0; i < IMKI_DATAFLASH_SENSORS && flash->log.surveying; i++)
+        if (flash->basis[i].length > 0 && is_same(of, &flash->basis[i]))
+            flash->basis[i] = *of;
+    unplan(flash, number);
+}
+
 void imki_dataflash_learn(imki_dataflash *flash, const imki_dataflash_format *format,
                           const char *message)
 {
@@ -120,11 +192,11 @@ void imki_dataflash_learn(imki_dataflash *flash, const imki_dataflash_format *fo
         const char *multipliers = text_field(format, "MultIds", 'N', message);
         if (number.type == IMKI_FLIGHT_NONE || !units || !multipliers)
             return;
-        imki_dataflash_format *of = &flash->format[imki_flight_whole(&number, message) & 0xFF];
-        copy_text(units, IMKI_DATAFLASH_FIELDS, of->units);
-        copy_text(multipliers, IMKI_DATAFLASH_FIELDS, of->multipliers);
+        learn_fields(flash, (int)(imki_flight_whole(&number, message) & 0xFF), units, multipliers);
         return;
     }
+    if (!flash->log.surveying)
+        return;
     const imki_flight_field id = imki_dataflash_field(format, "Id", NULL);
     if (id.type == IMKI_FLIGHT_NONE)
         return;

@@ -130,3 +130,35 @@ void imki_dataflash_plan(const imki_dataflash *flash, const imki_dataflash_forma
          add_cell(flash, format, "Temp", "temperature", "degC", false, plan)))
         plan->cell[plan->cell_count - 1].optional = true;
 }
+
+/* Until a new format has an FMTU of its own, the units of a field are those that it had. */
+static void keep_units(const imki_dataflash_format *before, imki_dataflash_format *format)
+{
+    const char *label = format->labels;
+    for (size_t i = 0; format->types[i]; i++) {
+        const size_t size = strcspn(label, ",");
+        char name[sizeof format->labels];
+        size_t index;
+        snprintf(name, sizeof name, "%.*s", (int)size, label);
+        label += size + (label[size] == ',');
+        format->units[i] = format->multipliers[i] = '?';
+        if (imki_dataflash_field(before, name, &index).type == IMKI_FLIGHT_NONE)
+            continue;
+        format->units[i] = before->units[index] ? before->units[index] : '?';
+        format->multipliers[i] = before->multipliers[index] ? before->multipliers[index] : '?';
+    }
+}
+
+bool imki_dataflash_follow(imki_dataflash *flash, int sensor, int number)
+{
+    imki_dataflash_format format = flash->format[number], *basis = &flash->basis[sensor];
+    if (basis->length == 0)
+        *basis = format;
+    else if (basis->number == number && basis->place == format.place)
+        format = *basis;
+    else if (!format.units[0])
+        keep_units(basis, &format);
+    imki_dataflash_plan(flash, &format, sensor, &flash->plan[sensor]);
+    flash->planned[sensor] = number + 1;
+    return imki_flight_follow(&flash->log, &flash->plan[sensor]);
+}

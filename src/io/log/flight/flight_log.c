@@ -134,7 +134,6 @@ static void estimate(imk_log_reader *reader, bool whole)
         const double ratio = whole ? 1 : done > 0 ? (double)size / (double)done : 0;
         stream->about.samples = (uint64_t)((double)stream->rows * ratio);
         stream->about.estimated = !whole;
-        stream->about.readable = stream->plan->usable && (stream->rows > 0 || !whole);
     }
 }
 
@@ -223,6 +222,11 @@ imk_status imki_flight_open(imk_log_reader *reader, imk_error *error)
     imk_status status = survey(reader, error);
     if (status == IMK_OK && log->settle)
         log->settle(reader);
+    for (size_t i = 0; i < log->stream_count; i++) {
+        imki_flight_stream *stream = &log->streams[i];
+        stream->about.readable =
+            stream->plan->usable && (stream->rows > 0 || stream->about.estimated);
+    }
     if (status == IMK_OK)
         status = choose(reader, error);
     if (status != IMK_OK)
@@ -244,6 +248,25 @@ imk_status imki_flight_open(imk_log_reader *reader, imk_error *error)
     return imki_log_first_rows(reader, 1, time, "", "", error);
 }
 
+bool imki_flight_follow(imki_flight_log *log, const imki_flight_plan *plan)
+{
+    if (log->plan.cell_count == 0 || log->streams[log->chosen].plan != plan)
+        return true;
+    for (size_t i = 0; i < log->plan.cell_count; i++) {
+        imki_flight_cell *cell = &log->plan.cell[i];
+        size_t now = 0;
+        while (now < plan->cell_count && strcmp(plan->cell[now].column, cell->column) != 0)
+            now++;
+        if (now < plan->cell_count)
+            *cell = plan->cell[now];
+        else if (cell->optional)
+            cell->value.type = IMKI_FLIGHT_NONE;
+        else
+            return false;
+    }
+    return plan->usable;
+}
+
 imk_status imki_flight_seek(imk_log_reader *reader, double fraction, imk_error *error)
 {
     const imki_flight_log *log = reader->state;
@@ -251,6 +274,10 @@ imk_status imki_flight_seek(imk_log_reader *reader, double fraction, imk_error *
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "",
                              "in a pipe and in compressed data there is no way to another place",
                              "write it to a plain file");
+    if (log->redefined && fraction > 0)
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "",
+                             "the log gives its messages other fields on the way",
+                             "read it from its beginning");
     const uint64_t size = size_of(&reader->text);
     const uint64_t length = size > log->begin ? size - log->begin : 0;
     return go_to(reader, log->begin + (uint64_t)(fraction * (double)length), error);

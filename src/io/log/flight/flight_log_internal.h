@@ -98,6 +98,7 @@ typedef struct imki_flight_log {
     uint64_t surveyed; /* byte up to which all definitions are known */
     bool lost;         /* we are somewhere in the log and no message is found yet */
     bool sought;       /* not all before was read: messages may be of unknown kinds */
+    bool redefined;    /* what holds at a place depends on what stands before it */
 } imki_flight_log;
 
 /* Add a sensor. `name` and `kind` are copied.
@@ -108,6 +109,10 @@ size_t imki_flight_stream_add(imki_flight_log *log, const char *name, const char
 /* Look at the beginning and the end of the log, list its sensors and choose one. The text is at the
  * first message, and is so again. */
 imk_status imki_flight_open(imk_log_reader *reader, imk_error *error);
+
+/* The plan of a sensor is another one from here on. @return false: it is the sensor that is read,
+ * and the columns cannot be had any more in the units that they have */
+bool imki_flight_follow(imki_flight_log *log, const imki_flight_plan *plan);
 
 imk_status imki_flight_read(imk_log_reader *reader, size_t max_rows, double *const *out,
                             size_t *rows, imk_error *error);

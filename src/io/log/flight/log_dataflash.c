@@ -18,8 +18,8 @@ static void settle(imk_log_reader *reader)
 {
     imki_dataflash *flash = reader->state;
     for (int i = 0; i < IMKI_DATAFLASH_SENSORS; i++)
-        if (flash->planned[i] > 0)
-            imki_dataflash_plan(flash, &flash->format[flash->planned[i] - 1], i, &flash->plan[i]);
+        if (flash->basis[i].length > 0)
+            imki_dataflash_plan(flash, &flash->basis[i], i, &flash->plan[i]);
 }
 
 static imk_status open_dataflash(imk_log_reader *reader, imk_error *error)
@@ -38,9 +38,10 @@ static imk_status open_dataflash(imk_log_reader *reader, imk_error *error)
     reader->state = flash;
     if (!flash)
         return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
-    for (size_t i = 0; i < 256; i++)
-        flash->format[i].sensor = -1;
-    flash->format[IMKI_DATAFLASH_FMT].length = IMKI_DATAFLASH_FMT_LENGTH;
+    for (int i = 0; i < 256; i++)
+        flash->first[i] = (imki_dataflash_format){.number = i, .sensor = -1};
+    flash->first[IMKI_DATAFLASH_FMT].length = IMKI_DATAFLASH_FMT_LENGTH;
+    imki_dataflash_restore(flash);
     flash->log.next = imki_dataflash_next;
     flash->log.forget = imki_dataflash_forget;
     flash->log.settle = settle;

@@ -10,13 +10,18 @@
 
 enum { LOOK = 1 << 20 }; /* bytes in which the kinds of messages are looked for */
 
+/* May a message begin with this byte? */
+static bool may_begin(const imki_maker *maker, char c)
+{
+    return c != '\0' && strchr(maker->starts, c) != NULL;
+}
+
 bool imki_messages_recognise(const imki_maker *maker, const char *begin, size_t size)
 {
     imki_message message;
     for (size_t at = 0; at < size; at++)
-        if (begin[at] != '\0' && strchr(maker->starts, begin[at]) &&
-            maker->find((const unsigned char *)begin + at, size - at, &message) ==
-                IMKI_FOUND_MESSAGE)
+        if (may_begin(maker, begin[at]) && maker->find((const unsigned char *)begin + at, size - at,
+                                                       &message) == IMKI_FOUND_MESSAGE)
             return true;
     return false;
 }
@@ -36,7 +41,7 @@ static bool step_on(const imki_messages *m, imki_log_text *text)
     bool sound = true;
     do
         sound &= may_be_between(m->maker, *at++);
-    while (at < text->end && (*at == '\0' || !strchr(m->maker->starts, *at)));
+    while (at < text->end && !may_begin(m->maker, *at));
     text->next = at;
     return sound;
 }
@@ -64,7 +69,10 @@ static imk_status next_message(imk_log_reader *reader, size_t rows, imki_message
             reader->cut_short |= m->part;
             return IMK_OK;
         }
-        const imki_found what = m->maker->find((const unsigned char *)text->next, left, message);
+        const bool begins = may_begin(m->maker, *text->next);
+        const imki_found what =
+            begins ? m->maker->find((const unsigned char *)text->next, left, message)
+                   : IMKI_FOUND_NOTHING;
         switch (what) {
         case IMKI_FOUND_MESSAGE:
             if (m->part)
@@ -80,7 +88,7 @@ static imk_status next_message(imk_log_reader *reader, size_t rows, imki_message
             m->part = true;
             break;
         case IMKI_FOUND_NOTHING: /* one byte does not tell */
-            m->part |= left == 1 && *text->next != '\0' && strchr(m->maker->starts, *text->next);
+            m->part |= left == 1 && begins;
             break;
         }
         if (!step_on(m, text) && what == IMKI_FOUND_NOTHING && m->begun && !m->part)

@@ -122,7 +122,9 @@ imk_status imki_ros_unpack(imki_ros_chunk *chunk, imki_ros_packing packing, cons
     step s = {.over = false};
     bool enough = start(chunk, &d);
     chunk->size = 0;
-    while (enough && !s.over && !s.failed) {
+    /* Several frames of zstd, one behind the other, are data as well [RFC8878]. */
+    const bool frames = packing == IMKI_ROS_ZSTD;
+    while (enough && !s.failed && (!s.over || (frames && size > 0 && chunk->size < due))) {
         /* What is claimed may be a thousand times the bytes that are there. */
         const size_t likely = chunk->size > 0 ? 2 * chunk->size : 4 * size + FIRST;
         enough = chunk->size < chunk->room || grow(chunk, likely < due ? likely : (size_t)due + 1);

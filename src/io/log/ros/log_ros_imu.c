@@ -110,6 +110,13 @@ static bool read_cdr(const uint8_t *data, size_t size, imki_imu *imu)
     return true;
 }
 
+int imki_ros_imu_representation(const uint8_t *data, size_t size)
+{
+    enum { LARGEST = 0x1F }; /* of those that are given away */
+    return size >= CDR_HEAD && data[0] == 0 && data[1] > CDR_LITTLE && data[1] <= LARGEST ? data[1]
+                                                                                          : 0;
+}
+
 bool imki_ros_imu_read(imki_ros_encoding encoding, const uint8_t *data, size_t size, imki_imu *imu)
 {
     return encoding == IMKI_ROS_1     ? read_ros1(data, size, imu)

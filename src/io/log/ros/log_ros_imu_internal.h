@@ -26,6 +26,9 @@ typedef struct imki_imu {
 /* Read a message. @return whether it is one, as a whole */
 bool imki_ros_imu_read(imki_ros_encoding encoding, const uint8_t *data, size_t size, imki_imu *imu);
 
+/* The number of the kind of CDR that a message is in, if it is one that is not read; else 0. */
+int imki_ros_imu_representation(const uint8_t *data, size_t size);
+
 enum { IMKI_ROS_IMU_MAX = 336 }; /* bytes of a message that is written */
 
 /* Write a message without orientation, in the frame "imu", little-endian. What it does not have is

@@ -30,9 +30,10 @@ typedef struct imki_ros_topic {
     imk_log_stream stream;
     uint64_t hash; /* of the whole name, type and encoding */
     imki_ros_encoding encoding;
-    char form[24]; /* the encoding as the log calls it; "": not said */
-    uint64_t seen; /* messages met in the look at the beginning */
-    imki_imu first;
+    char form[24];      /* the encoding as the log calls it; "": not said */
+    uint64_t seen;      /* messages met in the look at the beginning */
+    bool has[2];        /* one of those looked at has gyro, accel */
+    int strange;        /* representation of a message that is not read; 0: none was met */
     int64_t time[2][2]; /* of the first two: stamp, recorded */
     bool stamped;       /* a stamp of those looked at is not 0 */
 } imki_ros_topic;
@@ -69,6 +70,7 @@ struct imki_ros_log {
     bool indexed; /* all topics are known */
     bool counted; /* and their numbers of messages */
     bool moved;   /* by imk_log_seek(): channels may be unknown */
+    uint64_t met; /* messages of the topic that is read */
     /* In the look at the beginning: bytes are kept from where `looked` is, a record before the
      * first message of an Imu, so that a pipe can go back, too. */
     bool looking, held;
@@ -76,8 +78,7 @@ struct imki_ros_log {
     size_t damaged_before; /* there */
     size_t damaged_met;    /* in the look */
     bool cut_met;
-    bool by_receipt; /* stamps are all 0: the times are those of recording */
-    bool has[2];     /* gyro, accel */
+    bool by_receipt; /* the first stamps are 0: the times are those of recording */
     int64_t origin;  /* [ns] */
     bool frame_known;
     uint8_t frame[IMKI_ROS_FRAME]; /* of the first message that is read */

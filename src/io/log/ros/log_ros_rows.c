@@ -30,24 +30,49 @@ static bool decode(imki_ros_log *log, const imki_ros_topic *of, const imki_ros_m
 
 /* ---- the look at the beginning ---- */
 
-static void look_at(imki_ros_log *log, imki_ros_topic *topic, const imki_ros_message *message)
+static imk_status prepare(imki_ros_log *log, imk_error *error)
+{
+    log->packed = true;
+    log->unpacked = malloc(IMKI_ROS_MESSAGE_MAX);
+    log->unpacker = ZSTD_createDCtx();
+    return log->unpacked && log->unpacker ? IMK_OK
+                                          : imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+}
+
+/* A file of a bag, given alone, does not say that its messages are compressed one by one; no
+ * message of CDR begins so. */
+static bool begins_packed(const imki_ros_topic *topic, const imki_ros_message *message)
+{
+    return topic->encoding == IMKI_ROS_CDR && message->size >= 4 &&
+           memcmp(message->data, "\x28\xB5\x2F\xFD", 4) == 0;
+}
+
+static imk_status look_at(imki_ros_log *log, imki_ros_topic *topic, const imki_ros_message *message,
+                          imk_error *error)
 {
     imki_imu imu;
     if (topic->encoding == IMKI_ROS_OTHER || topic->seen >= IMKI_ROS_LOOK)
-        return;
+        return IMK_OK;
+    const bool finds_packed = !log->packed && begins_packed(topic, message);
+    const imk_status status = finds_packed ? prepare(log, error) : IMK_OK;
+    if (status != IMK_OK)
+        return status;
     if (!decode(log, topic, message, &imu)) {
+        if (!log->packed && topic->encoding == IMKI_ROS_CDR)
+            topic->strange = imki_ros_imu_representation(message->data, message->size);
         imki_log_damage(log->reader, 0);
-        return;
+        return IMK_OK;
     }
     log->held = true;
-    if (topic->seen == 0)
-        topic->first = imu;
+    for (int k = 0; k < 2; k++)
+        topic->has[k] |= imu.has[k];
     if (topic->seen < 2) {
         topic->time[topic->seen][0] = imu.stamp;
         topic->time[topic->seen][1] = message->received;
     }
     topic->stamped |= imu.stamp != 0;
     topic->seen++;
+    return IMK_OK;
 }
 
 /* Damage counts where the reading begins behind it.
@@ -66,7 +91,7 @@ static imk_status look(imki_ros_log *log, imk_error *error)
             imki_log_damage(log->reader, 0);
         if (!topic || (log->indexed && topic != &log->topics[log->topic]))
             continue;
-        look_at(log, topic, &message);
+        status = look_at(log, topic, &message, error);
         if (log->indexed && topic->seen == IMKI_ROS_LOOK)
             break;
     }
@@ -143,8 +168,8 @@ static imk_status make_layout(imki_ros_log *log, imk_error *error)
     const imki_ros_topic *topic = &log->topics[log->topic];
     const char *names[7] = {all[0]};
     for (int i = 1; i < 7; i++)
-        names[i] = topic->first.has[(i - 1) / 3] ? all[i] : NULL;
-    if (topic->seen > 0 && !topic->first.has[0] && !topic->first.has[1])
+        names[i] = topic->has[(i - 1) / 3] ? all[i] : NULL;
+    if (topic->seen > 0 && !topic->has[0] && !topic->has[1])
         return imk_error_set(error, IMK_ERROR_EMPTY, topic->stream.name,
                              "its messages hold neither angular rate nor specific force: their "
                              "covariances begin with -1",
@@ -164,6 +189,14 @@ static imk_status find_times(imki_ros_log *log, imk_error *error)
     imk_log_reader *reader = log->reader;
     const imki_ros_topic *topic = &log->topics[log->topic];
     double time[2];
+    if (topic->seen == 0 && topic->strange > 0) {
+        char found[96];
+        snprintf(found, sizeof found, "the messages are in CDR of another kind, number %d",
+                 topic->strange);
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, topic->stream.name, found,
+                             "record them in plain CDR (0 or 1), as ROS 2 does, or export them "
+                             "as CSV");
+    }
     log->by_receipt = !topic->stamped;
     log->origin = imki_log_stamp_origin(reader, topic->time[0][log->by_receipt], BILLION);
     for (int i = 0; i < 2; i++)
@@ -184,11 +217,10 @@ imki_ros_log *imki_ros_log_of(imk_log_reader *reader)
 imk_status imki_ros_open(imki_ros_log *log, imk_error *error)
 {
     imk_status status = IMK_OK;
-    if (log->packed &&
-        (!(log->unpacked = malloc(IMKI_ROS_MESSAGE_MAX)) || !(log->unpacker = ZSTD_createDCtx())))
-        return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    if (log->packed)
+        status = prepare(log, error);
     log->looking = true;
-    if (log->indexed)
+    if (status == IMK_OK && log->indexed)
         status = choose(log, error);
     if (status == IMK_OK)
         status = look(log, error);
@@ -227,6 +259,9 @@ static void put_row(imki_ros_log *log, const imki_imu *imu, int64_t received, do
     const imki_log_layout_read *layout = &reader->layout;
     const int64_t time = log->by_receipt ? received : imu->stamp;
     bool finite = true;
+    reader->stamps += log->by_receipt && imu->stamp != 0;
+    for (int k = 0; k < 2; k++)
+        reader->later[k] += imu->has[k] && layout->cell_column[3 * k + 1] < 0;
     out[0][row] = (double)difference(time, log->origin) / 1e9;
     for (int i = 0; i < 6; i++) {
         if (layout->cell_column[i + 1] < 0)
@@ -237,6 +272,16 @@ static void put_row(imki_ros_log *log, const imki_imu *imu, int64_t received, do
     }
     if (!finite && reader->not_finite++ == 0)
         reader->first_not_finite = reader->rows + row + 1;
+}
+
+/* At the end of a log that was read as a whole. */
+static void compare_with_index(const imki_ros_log *log)
+{
+    const uint64_t stated = log->topics[log->topic].stream.samples;
+    if (!log->counted || log->moved || log->met >= stated)
+        return;
+    log->reader->stated = stated;
+    log->reader->absent = stated - log->met;
 }
 
 imk_status imki_ros_read(imk_log_reader *reader, size_t max_rows, double *const *out, size_t *rows,
@@ -250,9 +295,12 @@ imk_status imki_ros_read(imk_log_reader *reader, size_t max_rows, double *const 
     for (log->rows = 0; log->rows < max_rows;) {
         *rows = log->rows;
         const imk_status status = log->container->next(log, &message, &found, error);
+        if (status == IMK_OK && !found)
+            compare_with_index(log);
         if (status != IMK_OK || !found)
             return status;
         imki_ros_topic *topic = imki_ros_topic_of(log, message.channel);
+        log->met += topic == &log->topics[log->topic];
         if (topic != &log->topics[log->topic]) {
             if (!topic && !log->moved)
                 imki_log_damage(reader, log->rows);

@@ -124,6 +124,7 @@ static imk_status open_database(imki_rosbag2 *bag, imk_error *error)
     if (text && imki_rosbag2_metadata(bag, NULL, text, strlen(text), NULL) == IMK_ERROR_MEMORY)
         status = imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     free(text);
+    bag->log.reader->unclosed = bag->db.bytes.ahead && !bag->log.counted;
     return status;
 }
 

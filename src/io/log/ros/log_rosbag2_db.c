@@ -151,6 +151,16 @@ static imk_status check_closed(const char *path, imk_error *error)
     return IMK_OK;
 }
 
+static imk_status refuse_tables(const imki_rosbag2_db *db, imk_error *error)
+{
+    return imk_error_set(error, IMK_ERROR_FORMAT, "",
+                         "the SQLite database has no tables \"topics\" and \"messages\"",
+                         db->bytes.ahead ? "it was copied before it was closed: copy the file with "
+                                           "-wal behind its name, too, and close it: sqlite3 "
+                                           "FILE.db3 'SELECT count(*) FROM topics'"
+                                         : "a bag of ROS 2");
+}
+
 imk_status imki_rosbag2_db_open(imki_rosbag2 *bag, imk_error *error)
 {
     imki_rosbag2_db *db = &bag->db;
@@ -167,9 +177,7 @@ imk_status imki_rosbag2_db_open(imki_rosbag2 *bag, imk_error *error)
         !imki_sqlite_has_table(db->handle, "topics"))
         return sqlite3_errcode(db->handle) == SQLITE_OK ||
                        sqlite3_errcode(db->handle) == SQLITE_DONE
-                   ? imk_error_set(error, IMK_ERROR_FORMAT, "",
-                                   "the SQLite database has no tables \"topics\" and \"messages\"",
-                                   "a bag of ROS 2")
+                   ? refuse_tables(db, error)
                    : refuse(db, error);
     return find_ends(db, error);
 }

@@ -13,8 +13,10 @@
  *       relative_file_paths: [FILE, …] */
 #include "log_rosbag2_internal.h"
 
+#include "imukit/names.h"
 #include "io/model/document_internal.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -155,6 +157,34 @@ static imk_status take_form(imki_rosbag2 *bag, const imk_document *document, int
     return IMK_OK;
 }
 
+/* Does the list name this file of the folder, or the compressed one that it was made from? */
+static bool is_listed(const imki_rosbag2 *bag, const char *name)
+{
+    for (size_t i = 0; i < bag->file_count; i++)
+        if (strncmp(strrchr(bag->files[i], '/') + 1, name, strlen(name)) == 0)
+            return true;
+    return false;
+}
+
+/* Files of logs that are not in the list, as where a recording was not ended. */
+static void look_for_others(imki_rosbag2 *bag, const char *folder)
+{
+    imk_log_reader *reader = bag->log.reader;
+    DIR *entries = opendir(folder);
+    const struct dirent *entry;
+    while (entries && (entry = readdir(entries)) != NULL) {
+        const char *name = entry->d_name;
+        if ((!imk_has_ending(name, ".db3") && !imk_has_ending(name, ".mcap")) ||
+            is_listed(bag, name))
+            continue;
+        /* The first by name, as the order of a folder is any. */
+        if (reader->unlisted++ == 0 || strcmp(name, reader->unlisted_name) < 0)
+            snprintf(reader->unlisted_name, sizeof reader->unlisted_name, "%s", name);
+    }
+    if (entries)
+        closedir(entries);
+}
+
 imk_status imki_rosbag2_metadata(imki_rosbag2 *bag, const char *folder, const char *text,
                                  size_t size, imk_error *error)
 {
@@ -173,7 +203,12 @@ imk_status imki_rosbag2_metadata(imki_rosbag2 *bag, const char *folder, const ch
         status = take_form(bag, document, root, error);
     if (status == IMK_OK && folder)
         status = take_files(bag, document, root, folder, error);
-    if (status == IMK_OK)
+    if (status == IMK_OK && folder)
+        look_for_others(bag, folder);
+    /* In a file of several, the numbers are those of the whole bag. */
+    const int files = value_of(document, root, "relative_file_paths", IMKI_NODE_SEQUENCE);
+    const bool alone = !folder && files != IMKI_NONE && document->node[files].count > 1;
+    if (status == IMK_OK && !alone)
         status = take_topics(bag, document, root, error);
     imk_document_free(document);
     return status;

@@ -259,13 +259,14 @@ imk_status imki_sqlite_refuse(sqlite3 *handle, const imki_sqlite_bytes *bytes, i
                          "sqlite3 NEW.db3");
 }
 
-/* The head says the size of a page and their number. */
-static void find_claim(imki_sqlite_bytes *bytes)
+/* The head says the size of a page, the mode of writing, and the number of pages. */
+static void look_at_head(imki_sqlite_bytes *bytes)
 {
     uint8_t head[HEAD];
     bytes->claimed = bytes->size;
     if (read_bytes(bytes, head, HEAD, 0) != HEAD)
         return;
+    bytes->ahead = head[18] == 2 || head[19] == 2;
     const uint32_t page = (uint32_t)head[16] << 8 | head[17];
     const uint64_t pages =
         (uint32_t)head[28] << 24 | (uint32_t)head[29] << 16 | (uint32_t)head[30] << 8 | head[31];
@@ -279,7 +280,7 @@ imk_status imki_sqlite_open(imki_sqlite_bytes *bytes, sqlite3 **handle, imk_erro
     char name[NAME_SIZE];
     if (!register_vfs())
         return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
-    find_claim(bytes);
+    look_at_head(bytes);
     snprintf(name, sizeof name, "%p", (void *)bytes);
     if (sqlite3_open_v2(name, handle, SQLITE_OPEN_READONLY, "imukit") != SQLITE_OK)
         return imki_sqlite_refuse(*handle, bytes, error);

@@ -15,6 +15,7 @@ typedef struct imki_sqlite_bytes {
     uint64_t size;
     int system_error; /* errno of a read that failed; 0: none has */
     uint64_t steps;   /* of the library's machine since this was set to 0, in thousands */
+    bool ahead;       /* in the mode of a write-ahead log */
     uint64_t claimed; /* size that the head of the database says, or `size` if that is larger */
 } imki_sqlite_bytes;
 

@@ -244,6 +244,161 @@ static void what_cannot_be_read_is_refused(void **state)
     check_refused("time [s],gyro_x [rad/s]\n", 24, &settings, IMK_ERROR_FORMAT, "ArduPilot");
 }
 
+/* A log that is made here, after [DATAFLASH]. */
+typedef struct made {
+    char at[8192];
+    size_t size;
+} made;
+
+static void put(made *m, const void *at, size_t size)
+{
+    assert_true(m->size + size <= sizeof m->at);
+    memcpy(m->at + m->size, at, size);
+    m->size += size;
+}
+
+static void put_header(made *m, int number)
+{
+    const char header[3] = {(char)0xA3, (char)0x95, (char)number};
+    put(m, header, 3);
+}
+
+static void put_format(made *m, int number, int length, const char *name, const char *types,
+                       const char *labels)
+{
+    char text[4 + 16 + 64] = {0};
+    const char head[2] = {(char)number, (char)length};
+    memcpy(text, name, strlen(name));
+    memcpy(text + 4, types, strlen(types));
+    memcpy(text + 20, labels, strlen(labels));
+    put_header(m, 128);
+    put(m, head, 2);
+    put(m, text, sizeof text);
+}
+
+/* A time and six floats: `first` are those of the three fields that come first. */
+static void put_row(made *m, int number, int k, int first, int second)
+{
+    const uint64_t stamp = (uint64_t)(1000 * k + 1000);
+    put_header(m, number);
+    put(m, &stamp, 8);
+    for (int i = 0; i < 6; i++) {
+        const float number_at = (float)value(k, i < 3 ? first + i : second + i - 3);
+        put(m, &number_at, 4);
+    }
+}
+
+#define GYROS_FIRST "TimeUS,GyrX,GyrY,GyrZ,AccX,AccY,AccZ"
+#define FORCES_FIRST "TimeUS,AccX,AccY,AccZ,GyrX,GyrY,GyrZ"
+
+static void put_head(made *m)
+{
+    put_format(m, 128, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns");
+}
+
+static void check_made(const made *m, size_t rows)
+{
+    read_bytes(m->at, m->size, NULL, 4, &t);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.rows, rows);
+    assert_int_equal(t.findings.damaged, 0);
+    for (int k = 0; k < (int)rows; k++) {
+        assert_true(t.value[0][k] == seconds(1000 * k + 1000));
+        for (int axis = 0; axis < 6; axis++)
+            assert_true(t.value[1 + axis][k] == value(k, axis));
+    }
+}
+
+/* The first message of a number follows its FMT at once, also where a type is defined between
+ * messages of others. */
+static void messages_right_behind_their_format(void **state)
+{
+    (void)state;
+    static made m;
+    m.size = 0;
+    put_head(&m);
+    put_format(&m, 200, 35, "IMU", "Qffffff", GYROS_FIRST);
+    for (int k = 0; k < 10; k++) {
+        put_row(&m, 200, k, 0, 3);
+        if (k == 4)
+            put_format(&m, 210, 35, "DYN", "Qffffff", "TimeUS,A,B,C,D,E,F");
+        if (k >= 4)
+            put_row(&m, 210, k, 0, 0);
+    }
+    check_made(&m, 10);
+}
+
+/* Two logs put together, of versions that have the fields in another order, under the same number
+ * or under another one. */
+static void formats_that_change(void **state)
+{
+    (void)state;
+    static made m;
+    for (int number = 200; number <= 201; number++) {
+        m.size = 0;
+        put_head(&m);
+        put_format(&m, 200, 35, "IMU", "Qffffff", GYROS_FIRST);
+        for (int k = 0; k < 5; k++)
+            put_row(&m, 200, k, 0, 3);
+        put_head(&m);
+        put_format(&m, number, 35, "IMU", "Qffffff", FORCES_FIRST);
+        if (number == 201) /* what is no sensor any more */
+            put_format(&m, 200, 35, "BARO", "Qffffff", "TimeUS,A,B,C,D,E,F");
+        for (int k = 5; k < 10; k++) {
+            put_row(&m, number, k, 3, 0);
+            if (number == 201)
+                put_row(&m, 200, k, 1, 2);
+        }
+        check_made(&m, 10);
+        imk_log_reader *reader;
+        imk_error error;
+        CHECK_OK(imk_log_open_memory(m.at, m.size, NULL, &reader, &error));
+        CHECK_STATUS(imk_log_seek(reader, 0.5, &error), IMK_ERROR_UNSUPPORTED);
+        imk_log_close(reader);
+    }
+}
+
+/* ... and of versions with other columns, or with another unit: no row of the second is read. */
+static void formats_that_lose_columns(void **state)
+{
+    (void)state;
+    static made m;
+    for (int unit = 0; unit < 2; unit++) {
+        m.size = 0;
+        put_head(&m);
+        put_format(&m, 200, 35, "IMU", "Qffffff", GYROS_FIRST);
+        for (int k = 0; k < 5; k++)
+            put_row(&m, 200, k, 0, 3);
+        const size_t joint = m.size;
+        put_head(&m);
+        put_format(&m, 201, 35, "IMU", "Qffffff",
+                   unit ? FORCES_FIRST : "TimeUS,GyrX,GyrY,GyrZ,A,B,C");
+        if (unit) {
+            char fields[44] = {0};
+            put_format(&m, 1, 76, "UNIT", "QbZ", "TimeUS,Id,Label");
+            put_header(&m, 1);
+            memcpy(fields + 8, "kdeg/s", 6);
+            put(&m, fields, 44);
+            put(&m, (char[29]){0}, 29);
+            put_format(&m, 2, 44, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds");
+            put_header(&m, 2);
+            memset(fields, 0, sizeof fields);
+            fields[8] = (char)201;
+            memcpy(fields + 9, "----kkk", 7);
+            put(&m, fields, 41);
+        }
+        for (int k = 5; k < 10; k++)
+            put_row(&m, 201, k, 3, 0);
+        read_bytes(m.at, m.size, NULL, 4, &t);
+        assert_int_equal(t.rows, 5);
+        CHECK_STATUS(t.status, IMK_ERROR_COLUMN);
+        char due[80];
+        snprintf(due, sizeof due, "\"head -c %zu\" and \"tail -c +%zu\"", joint, joint + 1);
+        if (!strstr(t.error.expected, due))
+            fail_msg("\"%s\" lacks \"%s\"", t.error.expected, due);
+    }
+}
+
 static int load(void **state)
 {
     (void)state;
@@ -270,6 +425,9 @@ int main(void)
         cmocka_unit_test(bytes_that_are_lost),
         cmocka_unit_test(any_place_can_be_gone_to),
         cmocka_unit_test(what_cannot_be_read_is_refused),
+        cmocka_unit_test(messages_right_behind_their_format),
+        cmocka_unit_test(formats_that_change),
+        cmocka_unit_test(formats_that_lose_columns),
     };
     return cmocka_run_group_tests(tests, load, unload);
 }

@@ -260,6 +260,29 @@ static void beginnings_are_judged(void **state)
     assert_int_equal(table.findings.first_damaged, 0);
 }
 
+/* Line feeds alone between the lines change nothing, at the end of the file neither. */
+static void lines_end_in_line_feeds(void **state)
+{
+    static char bytes[16384];
+    static log_table table, expected;
+    (void)state;
+    const imk_log_settings settings = rated();
+    const size_t size = log_fixture_read("vectornav.asc", sizeof bytes, bytes);
+    size_t kept = 0;
+    for (size_t i = 0; i < size; i++)
+        if (bytes[i] != '\r')
+            bytes[kept++] = bytes[i];
+    assert_true(kept < size && bytes[kept - 1] == '\n');
+    log_expected_read("vectornav.asc", &expected);
+    log_table_read(bytes, kept, &settings, 64, &table);
+    CHECK_STATUS(table.status, IMK_OK);
+    assert_int_equal(table.rows, expected.rows);
+    for (size_t row = 0; row < table.rows; row++)
+        check_same_row(&table, row, &expected, row);
+    assert_int_equal(table.findings.damaged, 0);
+    assert_false(table.findings.cut_short);
+}
+
 /* A look at another part begins with the next message, and meets no damage. */
 static void places_are_found(void **state)
 {
@@ -308,7 +331,7 @@ int main(void)
         cmocka_unit_test(published_lines_are_read),   cmocka_unit_test(published_bytes_are_read),
         cmocka_unit_test(rates_come_from_the_stamps), cmocka_unit_test(time_tags_need_a_unit),
         cmocka_unit_test(beginnings_are_judged),      cmocka_unit_test(places_are_found),
-        cmocka_unit_test(kinds_are_listed),
+        cmocka_unit_test(kinds_are_listed),           cmocka_unit_test(lines_end_in_line_feeds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
