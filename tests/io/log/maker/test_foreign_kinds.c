@@ -49,6 +49,9 @@ static void known_kinds_are_named(void **state)
         {BYTES("\x89PNG\r\n\x1A\n"), ".png", "log"},
         {BYTES("\xFF\xD8\xFF\xE0"), ".jpg", "log"},
         {BYTES("%PDF-1.4\n"), "PDF", "log"},
+        {BYTES("\xFD\x37zXZ\0\0\4"), "by xz", "xz -dk FILE"},
+        {BYTES("BZh9\x31\x41\x59\x26\x53\x59"), "by bzip2", "bzip2 -dk FILE"},
+        {BYTES("\x04\x22\x4D\x18\x64\x40\xA7"), "by lz4", "lz4 -d FILE NEW"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
