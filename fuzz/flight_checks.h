@@ -48,7 +48,8 @@ static inline void check_rows(imk_log_reader *reader, uint32_t choice)
     const imk_status status = imk_log_seek(reader, choice % 97 / 96.0, &error);
     require_told(status, &error);
     require(status == IMK_OK || status == IMK_ERROR_UNSUPPORTED);
-    (void)read_all(reader, FLIGHT_ROWS, second);
+    if (status == IMK_OK)
+        (void)read_all(reader, FLIGHT_ROWS, second);
 }
 
 static inline void check_flight_log(const uint8_t *data, size_t size, const char *format,

@@ -5,6 +5,7 @@
 #include "base/text_internal.h"
 #include "csv/log_dialects_internal.h"
 #include "log_reader_internal.h"
+#include "maker/foreign_kinds_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -75,6 +76,12 @@ static imk_status find_format(imk_log_reader *reader, const imki_input *input, i
     const imki_log_text *text = &reader->text;
     const char *name = reader->settings.binary ? "binary" : reader->settings.format;
     const bool of_text = name && imki_log_dialect_named(name);
+    if (input && !name) {
+        const imk_status status =
+            imki_foreign_packing_refuse(text->next, (size_t)(text->end - text->next), error);
+        if (status != IMK_OK)
+            return status;
+    }
     reader->format =
         of_text ? imk_log_format_get(0)
         : name  ? imk_log_format_named(name)

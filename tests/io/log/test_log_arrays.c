@@ -221,6 +221,22 @@ static void origin(void **state)
     }
 }
 
+/* timedelta64: whole numbers in the unit of its name. */
+static void durations(void **state)
+{
+    (void)state;
+    imk_log log;
+    imk_error error;
+    imk_log_settings s = settings_of(&si);
+    s.time_unit = NULL;
+    CHECK_OK(imk_log_load(FOLDER "duration.npz", &s, NULL, &log, &error));
+    assert_string_equal(log.column[0].name, "time");
+    assert_string_equal(log.column[0].unit.text, "ns");
+    for (size_t i = 0; i < ROWS; i++)
+        assert_true(log.data[0][i] == (double)i * 15625000 * 1e-9);
+    imk_log_free(&log);
+}
+
 static void check_refused(const char *name, settings s, imk_status due, const char *text)
 {
     char path[300], told[600];
@@ -249,6 +265,8 @@ static void refusals(void **state)
     check_refused("lengths.npz", (settings){.topic = "gyro"}, IMK_ERROR_RATE_MISSING, "--rate");
     check_refused("records.npz", (settings){0}, IMK_ERROR_EMPTY,
                   "\"table\" is a record array; write its fields: numpy.savez(");
+    check_refused("half.npz", (settings){.gyro = "rad/s", .accel = "m/s^2"}, IMK_ERROR_RATE_MISSING,
+                  "\"t\" is a NumPy array of type <f2; write it as float64");
     check_refused("named.npz", (settings){0}, IMK_ERROR_COLUMN, "add --columns");
     check_refused("named.npz", (settings){.columns = "time,gyro_x"}, IMK_ERROR_COLUMN,
                   "2 names are given for 7 columns; the columns are data column 1, data column 2");
@@ -260,7 +278,7 @@ static void refusals(void **state)
     check_refused("groups.h5", (settings){0}, IMK_ERROR_NAME_UNKNOWN,
                   "add --topic /left/imu (or --topic /right)");
     check_refused("virtual.h5", (settings){0}, IMK_ERROR_EMPTY,
-                  "\"/gyro_x\" is a dataset whose values are in another file");
+                  "\"/gyro_x\" is a dataset with values in another file; write the values into");
     check_refused("coded.h5", (settings){.topic = "table"}, IMK_ERROR_NAME_UNKNOWN,
                   "add --topic /holes (or --topic /list, --topic /scaled, ...)");
 }
@@ -281,6 +299,11 @@ static void streams(void **state)
     assert_string_equal(stream[1].name, "/right");
     assert_false(stream[2].readable);
     assert_string_equal(stream[2].name, "/elsewhere");
+    const imk_log_settings stated = settings_of(&si);
+    CHECK_OK(imk_log_streams(FOLDER "linked.h5", &stated, 4, stream, &count, &format, &error));
+    assert_int_equal(count, 2); /* gyro and time; a soft link called like a sensor */
+    assert_string_equal(stream[1].name, "/imu/accel");
+    assert_string_equal(stream[1].kind, "soft link");
     CHECK_OK(imk_log_streams(FOLDER "matlab.mat", NULL, 4, stream, &count, &format, &error));
     assert_int_equal(count, 2);
     assert_string_equal(stream[0].name, "");
@@ -391,6 +414,19 @@ static size_t read_fixture(const char *name, char bytes[16384])
     const size_t size = fread(bytes, 1, 16384, file);
     fclose(file);
     return size;
+}
+
+/* A block of the user's own before the file, which begins at 512, 1024, 2048, ... [HDF5]. */
+static void user_block(void **state)
+{
+    (void)state;
+    enum { MOST = 2048 };
+    static char bytes[MOST + 16384];
+    for (size_t block = 512; block <= MOST; block *= 2) {
+        memset(bytes, '#', block);
+        put_copy(bytes, block + read_fixture("chunked.h5", bytes + block));
+        assert_int_equal(try(), ROWS);
+    }
 }
 
 /* Whatever is left of a file, it is not taken for a whole log. Of HDF5 every attempt is a process.
@@ -518,7 +554,8 @@ int main(void)
         cmocka_unit_test(changed),     cmocka_unit_test(checksum),
         cmocka_unit_test(packed_bits), cmocka_unit_test(unread),
         cmocka_unit_test(coded),       cmocka_unit_test(coded_otherwise),
-        cmocka_unit_test(holes),
+        cmocka_unit_test(holes),       cmocka_unit_test(user_block),
+        cmocka_unit_test(durations),
     };
     return cmocka_run_group_tests(tests, set_up, clean_up);
 }

@@ -246,7 +246,7 @@ static imk_status add_streams(imk_log_reader *reader, const imki_array_list *lis
 }
 
 /* What to do about arrays that cannot be read, by the word that their kind has. */
-static imk_status refuse_others(const imki_array_list *list, imk_error *error)
+static imk_status refuse_other(const imki_array_other *other, imk_error *error)
 {
     static const struct {
         const char *word, *remedy;
@@ -254,7 +254,7 @@ static imk_status refuse_others(const imki_array_list *list, imk_error *error)
         {"complex", "write its real part, as a vector or matrix of numbers"},
         {"dimensions", "write it as a matrix of two: a row for each sample"},
         {"fields", "write each of them as a vector of its own"},
-        {"NumPy", "write it as float64: numpy.savez(FILE, gyro=gyro.astype('f8'))"},
+        {"NumPy", "write it as float64: numpy.savez(FILE, NAME=NAME.astype('f8'), ...)"},
         {"MATLAB", "write it in MATLAB as a CSV: writetable(TABLE, 'log.csv'), for a timetable "
                    "writetimetable()"},
         {"record", "write its fields: numpy.savez(FILE, **{n: table[n] for n in "
@@ -264,9 +264,9 @@ static imk_status refuse_others(const imki_array_list *list, imk_error *error)
         {"another file", "write the values into the file itself"},
         {"unclear", "state it as one number, a factor other than 0, of a dataset of numbers; "
                     "or write the values themselves without it"},
+        {"soft link", "write what it leads to in its place: h5copy -i FILE -s FROM -o NEW -d TO"},
         {"", "copy the file again, or write it with the usual compression"}};
     char found[96];
-    const imki_array_other *other = &list->other[0];
     size_t i = 0;
     while (!strstr(other->kind, remedies[i].word))
         i++;
@@ -327,6 +327,20 @@ static imk_status take_columns(imk_log_reader *reader, const imki_array_list *li
     return make_layout(reader, count, head, error);
 }
 
+/* A time of the group that cannot be read; NULL: there is none. */
+static const imki_array_other *time_among_others(const imki_array_list *list, const char *group)
+{
+    const size_t length = strlen(group);
+    for (size_t i = 0; i < list->other_count; i++) {
+        const char *name = list->other[i].name;
+        const bool within =
+            strncmp(name, group, length) == 0 && (length == 0 || name[length] == list->separator);
+        if (within && quantity_of(name + length + (length > 0)) == IMK_QUANTITY_TIME)
+            return &list->other[i];
+    }
+    return NULL;
+}
+
 imk_status imki_arrays_choose(imk_log_reader *reader, imki_array_list *list,
                               imki_array_column column[IMK_LOG_COLUMNS_MAX], uint64_t *rows,
                               imk_error *error)
@@ -340,11 +354,20 @@ imk_status imki_arrays_choose(imk_log_reader *reader, imki_array_list *list,
         status =
             imki_log_stream_choose(reader, "the file holds no arrays of samples", &chosen, error);
     if (status == IMK_ERROR_EMPTY && list->other_count > 0)
-        return refuse_others(list, error);
+        return refuse_other(&list->other[0], error);
     if (status != IMK_OK)
         return status;
     const imki_array *first = &list->array[group[of[chosen]].first];
     *rows = first->rows;
     tell_unread(reader, list, first->group);
-    return take_columns(reader, list, first, column, error);
+    status = take_columns(reader, list, first, column, error);
+    const imki_array_other *time = status != IMK_OK && reader->layout.missing.rate
+                                       ? time_among_others(list, first->group)
+                                       : NULL;
+    if (!time)
+        return status;
+    refuse_other(time, error);
+    if (error)
+        error->status = status;
+    return status;
 }

@@ -91,7 +91,7 @@ const char *imki_hdf5_obstacle(hid_t dataset, uint64_t values, uint64_t file_siz
     const hid_t how = H5Dget_create_plist(dataset);
     const int filters = H5Pget_nfilters(how);
     if (H5Pget_layout(how) == H5D_VIRTUAL || H5Pget_external_count(how) > 0)
-        obstacle = "dataset whose values are in another file";
+        obstacle = "dataset with values in another file";
     for (int i = 0; i < filters && !obstacle; i++) {
         unsigned flags, settings;
         size_t count = 0;

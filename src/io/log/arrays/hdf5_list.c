@@ -227,7 +227,7 @@ static bool find_kind(hid_t type, int rank, size_t size, char *kind)
     if (is_complex(type))
         snprintf(kind, size, "dataset of complex numbers");
     else if (class == H5T_COMPOUND)
-        snprintf(kind, size, "dataset of %d dimensions whose values have fields", rank);
+        snprintf(kind, size, "dataset of records, %d dimensions", rank);
     else if (class == H5T_FLOAT || class == H5T_INTEGER)
         snprintf(kind, size, "dataset of %d dimensions", rank);
     else if (class == H5T_ENUM || class == H5T_ARRAY || class == H5T_BITFIELD)
@@ -328,6 +328,8 @@ static void visit_link(walk *w, hid_t group, const char *path, const char *name,
         return; /* names with # are MATLAB's own */
     if (link.type == H5L_TYPE_EXTERNAL)
         note(w, whole, "link to another file");
+    if (link.type == H5L_TYPE_SOFT && imki_array_is_sensor(name)) /* others are shortcuts */
+        note(w, whole, "soft link");
     const hid_t object =
         link.type == H5L_TYPE_HARD ? H5Oopen(group, name, H5P_DEFAULT) : H5I_INVALID_HID;
     if (object < 0)

@@ -22,10 +22,14 @@ typedef struct hdf5_state {
     unsigned char *values;
 } hdf5_state;
 
+/* A block of the user's own may stand before the file, of 512 bytes, 1024 and so on [HDF5]. */
 static bool recognise(const char *begin, size_t size)
 {
-    static const char text[] = "MATLAB 7.3 MAT-file";
-    return size >= sizeof text && memcmp(begin, text, sizeof text - 1) == 0;
+    static const char text[] = "MATLAB 7.3 MAT-file", own[] = "\x89HDF\r\n\x1a\n";
+    bool found = size >= sizeof text && memcmp(begin, text, sizeof text - 1) == 0;
+    for (size_t at = 512; at + sizeof own - 1 <= size && !found; at *= 2)
+        found = memcmp(begin + at, own, sizeof own - 1) == 0;
+    return found;
 }
 
 static imk_status refuse(hdf5_state *state, imk_error *error)

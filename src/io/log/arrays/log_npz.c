@@ -36,7 +36,8 @@ static bool find_type(const imki_npy_array *npy, imki_array *array)
     } types[] = {{"f8", IMKI_FLOAT64}, {"f4", IMKI_FLOAT32}, {"i1", IMKI_INT8},
                  {"u1", IMKI_UINT8},   {"b1", IMKI_UINT8},   {"i2", IMKI_INT16},
                  {"u2", IMKI_UINT16},  {"i4", IMKI_INT32},   {"u4", IMKI_UINT32},
-                 {"i8", IMKI_INT64},   {"u8", IMKI_UINT64},  {"M8", IMKI_INT64}};
+                 {"i8", IMKI_INT64},   {"u8", IMKI_UINT64},  {"M8", IMKI_INT64},
+                 {"m8", IMKI_INT64}};
     static const char order[] =
 #if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
         "<";
@@ -46,12 +47,12 @@ static bool find_type(const imki_npy_array *npy, imki_array *array)
     array->swapped = npy->type[0] == order[0];
     for (size_t i = 0; i < sizeof types / sizeof types[0] && npy->type[0]; i++) {
         const size_t length = strlen(types[i].name);
-        const bool date = types[i].name[0] == 'M';
+        const bool date = strchr("Mm", types[i].name[0]) != NULL;
         if (strncmp(npy->type + 1, types[i].name, length) != 0 ||
             (npy->type[1 + length] != '\0' && !date))
             continue;
         array->type = types[i].type;
-        /* datetime64: "<M8[ns]" */
+        /* datetime64, timedelta64: "<M8[ns]", "<m8[ns]" */
         if (date)
             snprintf(array->unit, sizeof array->unit, "%.*s",
                      (int)strcspn(npy->type + 3 + (npy->type[3] == '['), "]"),

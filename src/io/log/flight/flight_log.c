@@ -235,9 +235,13 @@ imk_status imki_flight_open(imk_log_reader *reader, imk_error *error)
     imki_flight_plan *plan = &log->plan;
     *plan = *stream->plan;
     plan->cell_count = 0;
-    for (size_t i = 0; i < stream->plan->cell_count; i++)
-        if (!stream->plan->cell[i].optional || (stream->seen & 1u << i) != 0)
-            plan->cell[plan->cell_count++] = stream->plan->cell[i];
+    for (size_t i = 0; i < stream->plan->cell_count; i++) {
+        const imki_flight_cell *cell = &stream->plan->cell[i];
+        if (!cell->optional || (stream->seen & 1u << i) != 0)
+            plan->cell[plan->cell_count++] = *cell;
+        else if (strncmp(cell->column, "temperature", 11) == 0)
+            log->idle = *cell;
+    }
     for (size_t i = 0; i < plan->cell_count; i++)
         names[i + 1] = plan->cell[i].column;
     status = imki_log_layout_of(reader, plan->cell_count + 1, names, error);
@@ -248,23 +252,28 @@ imk_status imki_flight_open(imk_log_reader *reader, imk_error *error)
     return imki_log_first_rows(reader, 1, time, "", "", error);
 }
 
+/* The cell of a column in a new plan. @return false: there is none, and must be one */
+static bool follow(const imki_flight_plan *plan, imki_flight_cell *cell)
+{
+    size_t now = 0;
+    while (now < plan->cell_count && strcmp(plan->cell[now].column, cell->column) != 0)
+        now++;
+    if (now < plan->cell_count)
+        *cell = plan->cell[now];
+    else
+        cell->value.type = IMKI_FLIGHT_NONE;
+    return now < plan->cell_count || cell->optional;
+}
+
 bool imki_flight_follow(imki_flight_log *log, const imki_flight_plan *plan)
 {
     if (log->plan.cell_count == 0 || log->streams[log->chosen].plan != plan)
         return true;
-    for (size_t i = 0; i < log->plan.cell_count; i++) {
-        imki_flight_cell *cell = &log->plan.cell[i];
-        size_t now = 0;
-        while (now < plan->cell_count && strcmp(plan->cell[now].column, cell->column) != 0)
-            now++;
-        if (now < plan->cell_count)
-            *cell = plan->cell[now];
-        else if (cell->optional)
-            cell->value.type = IMKI_FLIGHT_NONE;
-        else
-            return false;
-    }
-    return plan->usable;
+    bool good = plan->usable;
+    for (size_t i = 0; i < log->plan.cell_count && good; i++)
+        good = follow(plan, &log->plan.cell[i]);
+    (void)follow(plan, &log->idle);
+    return good;
 }
 
 imk_status imki_flight_seek(imk_log_reader *reader, double fraction, imk_error *error)

@@ -89,6 +89,7 @@ typedef struct imki_flight_log {
     size_t stream_count, stream_room;
     size_t chosen;
     imki_flight_plan plan; /* of the chosen one, without columns that hold nothing */
+    imki_flight_cell idle; /* a temperature that held nothing in the survey; column "": none */
     uint64_t begin;        /* byte where the messages begin */
     uint64_t origin;       /* [us] that is subtracted from the stamps */
     size_t row;            /* rows of the message at hand that are read */

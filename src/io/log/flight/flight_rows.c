@@ -175,6 +175,8 @@ imk_status imki_flight_read(imk_log_reader *reader, size_t max_rows, double *con
             const size_t left = m.rows - log->row, room = max_rows - *rows;
             const size_t count = left < room ? left : room;
             give(reader, &m, log->row, count, out, *rows);
+            if (log->row == 0 && log->idle.column[0])
+                reader->later[2] += isfinite(value_of(&log->idle, &m, 0)) != 0;
             *rows += count;
             log->row += count;
             if (log->row < m.rows)

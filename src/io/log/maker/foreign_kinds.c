@@ -55,6 +55,14 @@ static bool is_pickle(const unsigned char *bytes, size_t size)
            (bytes[2] == 0x95 || bytes[2] == ']' || bytes[2] == '}' || bytes[2] == 'c');
 }
 
+/* bzip2: "BZh", the size of the blocks, the first six digits of pi or, empty, of its root. */
+static bool is_bzip2(const unsigned char *bytes, size_t size)
+{
+    return size >= 10 && bytes[3] >= '1' && bytes[3] <= '9' &&
+           (memcmp(bytes + 4, "\x31\x41\x59\x26\x53\x59", 6) == 0 ||
+            memcmp(bytes + 4, "\x17\x72\x45\x38\x50\x90", 6) == 0);
+}
+
 /* ---- texts that are no tables ---- */
 
 typedef struct text {
@@ -136,6 +144,15 @@ static bool is_yaml(const unsigned char *bytes, size_t size)
     return memchr(line + 1, ':', (size_t)((below ? below : t.end) - line - 1)) != NULL;
 }
 
+#define UNPACK(command)                                                                            \
+    "unpack it (" command ") and give what comes out; .gz and .zst are read as they are"
+
+static const foreign_kind packings[] = {
+    {BYTES("\xFD\x37zXZ\0"), 0, NULL, "compressed by xz", UNPACK("xz -dk FILE")},
+    {BYTES("BZh"), 0, is_bzip2, "compressed by bzip2", UNPACK("bzip2 -dk FILE")},
+    {BYTES("\x04\x22\x4D\x18"), 0, NULL, "compressed by lz4", UNPACK("lz4 -d FILE NEW")},
+};
+
 static const foreign_kind kinds[] = {
     {BYTES("PAR1"), 0, NULL, "a Parquet file", BY_PANDAS("read_parquet")},
     {BYTES("ARROW1"), 0, NULL, "an Arrow (Feather) file", BY_PANDAS("read_feather")},
@@ -193,14 +210,25 @@ static bool is_kind(const foreign_kind *kind, const char *begin, size_t size)
            (!kind->check || kind->check((const unsigned char *)begin, size));
 }
 
-imk_status imki_foreign_kind_refuse(const char *begin, size_t size, imk_error *error)
+static imk_status refuse(const foreign_kind *kind, size_t count, const char *begin, size_t size,
+                         imk_error *error)
 {
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+    for (size_t i = 0; i < count; i++) {
         char found[96];
-        if (!is_kind(&kinds[i], begin, size))
+        if (!is_kind(&kind[i], begin, size))
             continue;
-        snprintf(found, sizeof found, "the file is %s, which imukit does not read", kinds[i].name);
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", found, kinds[i].remedy);
+        snprintf(found, sizeof found, "the file is %s, which imukit does not read", kind[i].name);
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", found, kind[i].remedy);
     }
     return IMK_OK;
+}
+
+imk_status imki_foreign_kind_refuse(const char *begin, size_t size, imk_error *error)
+{
+    return refuse(kinds, sizeof kinds / sizeof kinds[0], begin, size, error);
+}
+
+imk_status imki_foreign_packing_refuse(const char *begin, size_t size, imk_error *error)
+{
+    return refuse(packings, sizeof packings / sizeof packings[0], begin, size, error);
 }

@@ -9,5 +9,7 @@
 
 /* @return IMK_OK, or IMK_ERROR_UNSUPPORTED with what the file is and how to export it */
 imk_status imki_foreign_kind_refuse(const char *begin, size_t size, imk_error *error);
+/* Refuse what is compressed in a way that is not read, before its bytes are taken for anything. */
+imk_status imki_foreign_packing_refuse(const char *begin, size_t size, imk_error *error);
 
 #endif

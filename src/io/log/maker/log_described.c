@@ -155,6 +155,23 @@ static imk_status skip_header(imk_log_reader *reader, imk_error *error)
     return IMK_OK;
 }
 
+/* A file that says what it is is no file of records alone; behind a header that is passed over it
+ * may hold some. Beginnings of fewer bytes are too easily those of a record. */
+static imk_status refuse_known(const imk_log_reader *reader, imk_error *error)
+{
+    enum { CERTAIN = 4 };
+    const imki_log_text *text = &reader->text;
+    const imk_log_format *format =
+        imk_log_format_begun(text->next, (size_t)(text->end - text->next));
+    char found[96];
+    if (!format || strlen(format->beginning) < CERTAIN)
+        return IMK_OK;
+    snprintf(found, sizeof found, "the file begins as one of the format %.32s", format->title);
+    return imk_error_set(error, IMK_ERROR_CONFLICT, "binary", found,
+                         "leave --binary out; or state how many bytes stand before the records, "
+                         "as \"header 128\"");
+}
+
 static imk_status open_described(imk_log_reader *reader, imk_error *error)
 {
     const char *names[IMK_LOG_COLUMNS_MAX];
@@ -175,7 +192,7 @@ static imk_status open_described(imk_log_reader *reader, imk_error *error)
     for (size_t i = 0; i < reader->layout.column_count; i++)
         reader->layout.column[i].unit_origin = IMK_UNIT_OF_SETTINGS;
     if (status == IMK_OK)
-        status = skip_header(reader, error);
+        status = d->form.header > 0 ? skip_header(reader, error) : refuse_known(reader, error);
     if (status != IMK_OK)
         return status;
     d->begin = imki_log_text_place(&reader->text);

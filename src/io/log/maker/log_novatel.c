@@ -235,10 +235,10 @@ static imk_status layout(imk_log_reader *reader, imki_messages *m, const imki_me
 }
 
 static const imki_message_kind kinds[] = {
-    {RAWIMU, "RAWIMU", "RAWIMU", layout, row},
-    {RAWIMUS, "RAWIMUS", "RAWIMUS", layout, row},
-    {RAWIMUX, "RAWIMUX", "RAWIMUX", layout, row},
-    {RAWIMUSX, "RAWIMUSX", "RAWIMUSX", layout, row},
+    {RAWIMU, "RAWIMU", "RAWIMU", layout, row, NULL},
+    {RAWIMUS, "RAWIMUS", "RAWIMUS", layout, row, NULL},
+    {RAWIMUX, "RAWIMUX", "RAWIMUX", layout, row, NULL},
+    {RAWIMUSX, "RAWIMUSX", "RAWIMUSX", layout, row, NULL},
 };
 
 static const imki_maker novatel = {

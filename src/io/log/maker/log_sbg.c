@@ -106,9 +106,9 @@ static imk_status layout(imk_log_reader *reader, imki_messages *m, const imki_me
 }
 
 static const imki_message_kind kinds[] = {
-    {IMU_SHORT, "imu_short", "SBG_ECOM_LOG_IMU_SHORT", layout, row_short},
-    {IMU_DATA, "imu_data", "SBG_ECOM_LOG_IMU_DATA", layout, row_data},
-    {FAST_IMU_DATA, "fast_imu_data", "SBG_ECOM_LOG_FAST_IMU_DATA", layout, row_fast},
+    {IMU_SHORT, "imu_short", "SBG_ECOM_LOG_IMU_SHORT", layout, row_short, NULL},
+    {IMU_DATA, "imu_data", "SBG_ECOM_LOG_IMU_DATA", layout, row_data, NULL},
+    {FAST_IMU_DATA, "fast_imu_data", "SBG_ECOM_LOG_FAST_IMU_DATA", layout, row_fast, NULL},
 };
 
 static const imki_maker sbg = {

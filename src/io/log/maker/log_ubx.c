@@ -3,7 +3,8 @@
  * two sums of class … payload. Lines of NMEA and messages of RTCM 3 may stand between (D3, ten bits
  * of size, payload, CRC-24). The payload is four bytes and pairs of u32: a reading, whose type is
  * in the highest byte and whose number in the others, and the sensor's time tag. Readings of one
- * tag are a row. u-blox does not say what a tag lasts, so the user has to. */
+ * tag are a row, also where they stand in several messages. u-blox does not say what a tag lasts,
+ * so the user has to. */
 #include "description_internal.h"
 #include "messages_internal.h"
 
@@ -20,7 +21,10 @@ enum {
     RESERVED = 4,
     PAIR = 8,
     TAG_BITS = 24, /* of the sensors whose tags begin again before 2^32 */
-    READINGS = 7
+    READINGS = 7,
+    GYROS = 0x07, /* cells, by bits */
+    ACCELS = 0x38,
+    TEMPERATURE = 0x40
 };
 
 /* In the order of the cells behind the time. */
@@ -123,9 +127,37 @@ static unsigned take_set(imki_messages *m, const imki_message *message, uint32_t
     return taken;
 }
 
+/* Give what is held as a row, unless it has none of the columns.
+ * @return whether it is one */
+static bool give(imki_messages *m, double *values)
+{
+    static const unsigned kinds[3] = {GYROS, ACCELS, TEMPERATURE};
+    const unsigned taken = m->held.cells, sensors = m->cells & (GYROS | ACCELS);
+    const bool broken = m->held.broken && (taken & sensors) != sensors;
+    m->held.cells = 0;
+    m->held.broken = false;
+    for (int i = 0; i < 3; i++)
+        m->later[i] += (taken & kinds[i] & ~m->cells) != 0;
+    if ((taken & sensors) == 0 || broken)
+        return false;
+    set_stamp(m, m->held.tag);
+    values[0] = (double)m->held.tag;
+    for (size_t i = 0; i < READINGS; i++)
+        values[1 + i] = taken & 1u << i ? m->held.numbers[i] : (double)NAN;
+    return true;
+}
+
+static void hold(imki_messages *m, unsigned taken, uint32_t tag, const double numbers[READINGS])
+{
+    m->held.cells |= taken;
+    m->held.tag = tag;
+    for (size_t i = 0; i < READINGS; i++)
+        if (taken & 1u << i)
+            m->held.numbers[i] = numbers[i];
+}
+
 static bool row(imki_messages *m, const imki_message *message, double *values)
 {
-    enum { SENSORS = 0x3F };
     double numbers[READINGS];
     uint32_t tag;
     if (message->body_size < RESERVED || (message->body_size - RESERVED) % PAIR != 0) {
@@ -135,15 +167,38 @@ static bool row(imki_messages *m, const imki_message *message, double *values)
     m->place = m->place < RESERVED ? RESERVED : m->place;
     while (m->place < message->body_size) {
         const unsigned taken = take_set(m, message, &tag, numbers);
-        if ((taken & SENSORS) == 0)
-            continue;
-        set_stamp(m, tag);
-        values[0] = (double)tag;
-        for (size_t i = 0; i < READINGS; i++)
-            values[1 + i] = taken & 1u << i ? numbers[i] : (double)NAN;
-        return true;
+        const bool ends = m->held.cells != 0 && (tag != m->held.tag || (m->held.cells & taken));
+        const bool is_row = ends && give(m, values);
+        hold(m, taken, tag, numbers);
+        if (is_row)
+            return true;
     }
     return false;
+}
+
+static bool rest(imki_messages *m, double *values)
+{
+    return m->held.cells != 0 && give(m, values);
+}
+
+/* What the first message holds, and those behind it that go on with its last tag. */
+static unsigned first_cells(const imki_message *first, const unsigned char *end)
+{
+    unsigned cells = 0;
+    uint32_t tag = 0;
+    imki_message message = *first;
+    const unsigned char *at = first->body - HEADER;
+    do {
+        const bool raw = message.id == ESF_RAW && message.body_size >= RESERVED + PAIR;
+        if (raw && cells != 0 && imki_little(message.body + RESERVED + 4, 4) != tag)
+            break;
+        for (size_t i = RESERVED; raw && i + PAIR <= message.body_size; i += PAIR) {
+            cells |= 1u << cell_of(message.body[i + 3]);
+            tag = (uint32_t)imki_little(message.body + i + 4, 4);
+        }
+        at += message.size;
+    } while (at < end && find(at, (size_t)(end - at), &message) == IMKI_FOUND_MESSAGE);
+    return cells;
 }
 
 /* The tags as times, in a unit that the user states, as in "39.0625 us". */
@@ -167,11 +222,9 @@ static imk_status layout(imk_log_reader *reader, imki_messages *m, const imki_me
     char time[64] = "sensor_tag";
     const char *names[1 + READINGS] = {time};
     const char *unit = reader->settings.time_unit;
-    unsigned taken = 0;
-    for (size_t at = RESERVED; at + PAIR <= first->body_size; at += PAIR)
-        taken |= 1u << cell_of(first->body[at + 3]);
+    m->cells = first_cells(first, (const unsigned char *)reader->text.end);
     for (size_t i = 0; i < READINGS; i++)
-        names[1 + i] = taken & 1u << i ? readings[i].name : NULL;
+        names[1 + i] = m->cells & 1u << i ? readings[i].name : NULL;
     m->timed = unit != NULL;
     if (!unit && reader->settings.rate == 0.0)
         return imk_error_set(error, IMK_ERROR_RATE_MISSING, "time",
@@ -191,8 +244,8 @@ static imk_status layout(imk_log_reader *reader, imki_messages *m, const imki_me
 }
 
 static const imki_message_kind kinds[] = {
-    {ESF_RAW, "ESF-RAW", "UBX-ESF-RAW", layout, row},
-    {ESF_MEAS, "ESF-MEAS", "UBX-ESF-MEAS", NULL, NULL},
+    {ESF_RAW, "ESF-RAW", "UBX-ESF-RAW", layout, row, rest},
+    {ESF_MEAS, "ESF-MEAS", "UBX-ESF-MEAS", NULL, NULL, NULL},
 };
 
 static const imki_maker ubx = {

@@ -78,7 +78,7 @@ static imk_status layout(imk_log_reader *reader, imki_messages *m, const imki_me
     return imki_log_layout_of(reader, NUMBERS, names, error);
 }
 
-static const imki_message_kind kinds[] = {{VNIMU, "VNIMU", "$VNIMU", layout, row}};
+static const imki_message_kind kinds[] = {{VNIMU, "VNIMU", "$VNIMU", layout, row, NULL}};
 
 static const imki_maker vectornav = {
     .starts = "$",

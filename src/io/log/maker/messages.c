@@ -110,8 +110,12 @@ static imk_status next_row(imk_log_reader *reader, size_t rows, double *values, 
     for (;;) {
         imki_message message;
         const imk_status status = next_message(reader, rows, &message, found, error);
-        if (status != IMK_OK || !*found)
+        if (status != IMK_OK)
             return status;
+        if (!*found) {
+            *found = m->kind->rest && m->kind->rest(m, values);
+            return IMK_OK;
+        }
         bool is_row = false;
         m->wrong = false;
         if (message.id == m->kind->id)
@@ -133,6 +137,8 @@ static void go_back(imk_log_reader *reader)
     text->next = text->hold;
     m->place = 0;
     m->begun = m->searching = m->lost = m->part = m->counter.begun = false;
+    m->held = (imki_held){.cells = 0};
+    memset(m->later, 0, sizeof m->later);
     reader->damaged = reader->first_damaged = 0;
     reader->cut_short = false;
 }
@@ -175,7 +181,8 @@ static imk_status choose_kind(imk_log_reader *reader, imk_error *error)
                 continue;
             imk_log_stream stream = {.instance = -1,
                                      .readable = readable == 1,
-                                     .samples = whole ? counts[i] : 0,
+                                     /* Where rows are held back, messages are no rows. */
+                                     .samples = whole && !kind->rest ? counts[i] : 0,
                                      .begin = (double)NAN,
                                      .end = (double)NAN};
             snprintf(stream.name, sizeof stream.name, "%s", kind->name);
@@ -262,6 +269,7 @@ imk_status imki_messages_read(imk_log_reader *reader, size_t max_rows, double *c
         double values[IMKI_MESSAGE_COLUMNS];
         bool found, finite = true;
         const imk_status status = next_row(reader, *rows, values, &found, error);
+        memcpy(reader->later, m->later, sizeof reader->later);
         if (status != IMK_OK || !found)
             return status;
         for (size_t i = 0; i < layout->cell_count; i++) {
@@ -287,6 +295,8 @@ imk_status imki_messages_seek(imk_log_reader *reader, double fraction, imk_error
     m->place = 0;
     m->searching = true;
     m->lost = m->part = m->counter.begun = false;
+    m->held = (imki_held){.broken = fraction > 0};
+    memset(m->later, 0, sizeof m->later);
     return status;
 }
 

@@ -41,6 +41,8 @@ typedef struct imki_message_kind {
      * @param values  receives the cells; the time is in m->stamp
      * @return whether there is one */
     bool (*row)(imki_messages *m, const imki_message *message, double *values);
+    /* The row that was held back, at the end of the log. NULL: there is none. */
+    bool (*rest)(imki_messages *m, double *values);
 } imki_message_kind;
 
 /* A format. */
@@ -53,6 +55,14 @@ typedef struct imki_maker {
     const imki_message_kind *kinds;
     size_t kind_count;
 } imki_maker;
+
+/* Readings of one tag, until those of another come: they may stand in several messages. */
+typedef struct imki_held {
+    unsigned cells; /* 0: there are none */
+    uint32_t tag;
+    bool broken; /* behind a jump: the readings before them are not known */
+    double numbers[IMKI_MESSAGE_COLUMNS];
+} imki_held;
 
 /* The state of a reader. */
 struct imki_messages {
@@ -74,6 +84,8 @@ struct imki_messages {
     unsigned type;
     double gyro_scale, accel_scale;
     unsigned cells; /* a bit per reading that is there */
+    imki_held held;
+    uint64_t later[3]; /* as in imk_log_findings */
 };
 
 /* Is there a message in these bytes? */

@@ -40,6 +40,8 @@ np.savez("lengths.npz", **{"gyro [rad/s]": gyro, "accel [m/s^2]": accel[:15]})
 with mock.patch("zipfile.ZIP64_LIMIT", 1), mock.patch("zipfile.ZIP_FILECOUNT_LIMIT", 1):
     np.savez("zip64.npz", **{"t [s]": t, "gyro [rad/s]": gyro, "accel [m/s^2]": accel})
 np.savez("unread.npz", t=t, accel=accel, gyro=gyro.astype("f2"), title="a log")
+np.savez("half.npz", t=t.astype("f2"), gyro=gyro, accel=accel)
+np.savez("duration.npz", t=(t * 1e9).astype("m8[ns]"), gyro=gyro, accel=accel)
 np.savez("records.npz", table=np.zeros(4, dtype=[("a", "f8"), ("b", "f8")]))
 
 scipy.io.savemat("plain.mat", dict(t=t, gyro=gyro, accel=accel.T, units=units))
@@ -113,6 +115,10 @@ with hdf5("groups.h5") as f:
     f["title"] = "a log"
     f["elsewhere"] = h5py.ExternalLink("/etc/passwd", "x")
     f["again"] = h5py.SoftLink("/left")
+with hdf5("linked.h5") as f:
+    g = f.create_group("imu")
+    g["time"], g["gyro"] = t, gyro
+    g["accel"] = h5py.SoftLink("/elsewhere")
 with hdf5("records.h5") as f:
     table = np.rec.fromarrays([t, gyro, accel.astype("f4")], dtype=[
         ("time", "f8"), ("gyro", "f8", 3), ("accel", "f4", 3)])

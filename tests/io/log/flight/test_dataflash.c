@@ -399,6 +399,41 @@ static void formats_that_lose_columns(void **state)
     }
 }
 
+/* A temperature that comes later than the look at the beginning, 8 MiB, is no column, but told. */
+static void temperatures_that_come_later(void **state)
+{
+    (void)state;
+    enum { ROWS = 20, FILLING = 255, FILLED = 9 << 20 };
+    static made m;
+    m.size = 0;
+    put_head(&m);
+    put_format(&m, 200, 39, "IMU", "Qfffffff", GYROS_FIRST ",T");
+    put_format(&m, 201, FILLING, "FILL", "ZZZNNNdi", "A,B,C,D,E,F,G,H");
+    char *at = malloc(FILLED + sizeof m.at), *end = at;
+    assert_non_null(at);
+    memcpy(end, m.at, m.size);
+    end += m.size;
+    for (int k = 0; k < ROWS; k++) {
+        const float temperature = k < ROWS / 2 ? NAN : 20;
+        m.size = 0;
+        put_row(&m, 200, k, 0, 3);
+        put(&m, &temperature, 4);
+        memcpy(end, m.at, m.size);
+        end += m.size;
+        for (int i = 0; k == ROWS / 2 - 1 && i < FILLED / FILLING; i++, end += FILLING) {
+            memset(end, 0, FILLING);
+            memcpy(end, "\xA3\x95\xC9", 3);
+        }
+    }
+    read_bytes(at, (size_t)(end - at), NULL, 64, &t);
+    free(at);
+    assert_int_equal(t.status, IMK_OK);
+    assert_int_equal(t.rows, ROWS);
+    assert_int_equal(t.columns, 7);
+    assert_int_equal(t.findings.damaged, 0);
+    assert_int_equal(t.findings.later[2], ROWS / 2);
+}
+
 static int load(void **state)
 {
     (void)state;
@@ -428,6 +463,7 @@ int main(void)
         cmocka_unit_test(messages_right_behind_their_format),
         cmocka_unit_test(formats_that_change),
         cmocka_unit_test(formats_that_lose_columns),
+        cmocka_unit_test(temperatures_that_come_later),
     };
     return cmocka_run_group_tests(tests, load, unload);
 }

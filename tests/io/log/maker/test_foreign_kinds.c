@@ -59,6 +59,9 @@ static void known_kinds_are_named(void **state)
         {BYTES("\n<!DOCTYPE html>\n"), "HTML", "CSV"},
         {BYTES("header:\n  stamp:\n    sec: 1\nangular_velocity:\n  x: 1\n"), "YAML", "bag"},
         {BYTES("---\r\nheader:\r\n  seq: 1\r\n"), "YAML", "bag"},
+        {BYTES("\xFD\x37zXZ\0\0\4"), "by xz", "xz -dk FILE"},
+        {BYTES("BZh9\x31\x41\x59\x26\x53\x59"), "by bzip2", "bzip2 -dk FILE"},
+        {BYTES("\x04\x22\x4D\x18\x64\x40\xA7"), "by lz4", "lz4 -d FILE NEW"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {

@@ -55,6 +55,23 @@ static void all_types_are_read(void **state)
         CHECK_CLOSE(table.value[j][0], due[j], 0.0);
 }
 
+/* A file of a known format is no file of records, unless they stand behind a header. */
+static void known_formats_are_not_records(void **state)
+{
+    static const char bytes[64] = "#ROSBAG V2.0\n";
+    static log_table table;
+    (void)state;
+    imk_log_settings settings = described("f32 gyro_x rad/s");
+    settings.rate = 1.0;
+    log_table_read(bytes, sizeof bytes, &settings, 64, &table);
+    CHECK_STATUS(table.status, IMK_ERROR_CONFLICT);
+    assert_string_equal(table.error.found, "the file begins as one of the format ROS 1 bag");
+    settings.binary = "header 16, f32 gyro_x rad/s";
+    log_table_read(bytes, sizeof bytes, &settings, 64, &table);
+    CHECK_STATUS(table.status, IMK_OK);
+    assert_int_equal(table.rows, (sizeof bytes - 16) / 4);
+}
+
 /* A counter of 16 bits in ms: it begins again, rows are missing, one is out of order. */
 static void counters_are_unwrapped(void **state)
 {
@@ -261,6 +278,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fixtures_are_read),
         cmocka_unit_test(all_types_are_read),
+        cmocka_unit_test(known_formats_are_not_records),
         cmocka_unit_test(counters_are_unwrapped),
         cmocka_unit_test(epochs_are_exact),
         cmocka_unit_test(every_cut_is_read),

@@ -307,6 +307,76 @@ static void places_are_found(void **state)
     }
 }
 
+/* UBX-ESF-RAW with `count` readings of types from `first` on, after [UBX]. @return behind it */
+static char *put_raw(char *at, const unsigned char *types, size_t count, unsigned value,
+                     unsigned tag)
+{
+    const size_t payload = 4 + 8 * count;
+    unsigned char bytes[128] = {0xB5, 0x62, 0x10, 0x03, (unsigned char)payload, 0};
+    unsigned char a = 0, b = 0;
+    for (size_t i = 0; i < count; i++) {
+        unsigned char *pair = bytes + 6 + 4 + 8 * i;
+        pair[0] = (unsigned char)value;
+        pair[3] = types[i];
+        pair[4] = (unsigned char)tag;
+        pair[5] = (unsigned char)(tag >> 8);
+    }
+    for (size_t i = 2; i < 6 + payload; i++) {
+        a = (unsigned char)(a + bytes[i]);
+        b = (unsigned char)(b + a);
+    }
+    bytes[6 + payload] = a;
+    bytes[7 + payload] = b;
+    memcpy(at, bytes, 8 + payload);
+    return at + 8 + payload;
+}
+
+/* Readings of one tag in two messages are one row; in messages with tags of their own those of the
+ * first message are the rows, and it is told that there are others. */
+static void readings_of_a_tag_are_a_row(void **state)
+{
+    enum { ROWS = 20 };
+    static const unsigned char gyros[] = {14, 13, 5}, accels[] = {16, 17, 18};
+    static char bytes[8192];
+    static log_table table;
+    (void)state;
+    for (int apart = 0; apart < 2; apart++) {
+        const imk_log_settings settings = timed();
+        char *end = bytes;
+        for (unsigned k = 0; k < ROWS; k++) {
+            end = put_raw(end, gyros, 3, k, 100 + 256 * k);
+            end = put_raw(end, accels, 3, k + 1, 100 + 256 * k + 3 * (unsigned)apart);
+        }
+        const size_t size = (size_t)(end - bytes);
+        log_table_read(bytes, size, &settings, 64, &table);
+        CHECK_STATUS(table.status, IMK_OK);
+        assert_int_equal(table.rows, ROWS);
+        assert_int_equal(table.columns, apart ? 4 : 7);
+        assert_int_equal(table.findings.not_finite, 0);
+        assert_int_equal(table.findings.later[0], 0);
+        assert_int_equal(table.findings.later[1], apart ? ROWS : 0);
+        for (unsigned k = 0; k < ROWS; k++) {
+            CHECK_CLOSE(table.value[1][k], k * 0x1p-12 * acos(-1) / 180, 1e-18);
+            if (!apart)
+                assert_true(table.value[6][k] == (k + 1) * 0x1p-10);
+        }
+        /* A place between two messages of a tag: the first row is whole. */
+        for (size_t at = 0; at < size; at += 19) {
+            imk_log_reader *reader = NULL;
+            double *columns[LOG_COLUMNS_MAX];
+            size_t rows;
+            for (size_t j = 0; j < LOG_COLUMNS_MAX; j++)
+                columns[j] = table.value[j];
+            CHECK_STATUS(imk_log_open_memory(bytes, size, &settings, &reader, NULL), IMK_OK);
+            CHECK_STATUS(imk_log_seek(reader, (double)at / (double)size, NULL), IMK_OK);
+            CHECK_STATUS(imk_log_read(reader, 64, columns, &rows, NULL), IMK_OK);
+            assert_true(rows <= ROWS && (at > 0 || rows == ROWS));
+            assert_int_equal(imk_log_findings_get(reader).not_finite, 0);
+            imk_log_close(reader);
+        }
+    }
+}
+
 static void kinds_are_listed(void **state)
 {
     imk_log_stream streams[4];
@@ -326,12 +396,13 @@ static void kinds_are_listed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fixtures_are_read),          cmocka_unit_test(formats_are_recognised),
-        cmocka_unit_test(every_cut_is_read),          cmocka_unit_test(every_damage_is_survived),
-        cmocka_unit_test(published_lines_are_read),   cmocka_unit_test(published_bytes_are_read),
-        cmocka_unit_test(rates_come_from_the_stamps), cmocka_unit_test(time_tags_need_a_unit),
-        cmocka_unit_test(beginnings_are_judged),      cmocka_unit_test(places_are_found),
-        cmocka_unit_test(kinds_are_listed),           cmocka_unit_test(lines_end_in_line_feeds),
+        cmocka_unit_test(fixtures_are_read),           cmocka_unit_test(formats_are_recognised),
+        cmocka_unit_test(every_cut_is_read),           cmocka_unit_test(every_damage_is_survived),
+        cmocka_unit_test(published_lines_are_read),    cmocka_unit_test(published_bytes_are_read),
+        cmocka_unit_test(rates_come_from_the_stamps),  cmocka_unit_test(time_tags_need_a_unit),
+        cmocka_unit_test(beginnings_are_judged),       cmocka_unit_test(places_are_found),
+        cmocka_unit_test(readings_of_a_tag_are_a_row), cmocka_unit_test(kinds_are_listed),
+        cmocka_unit_test(lines_end_in_line_feeds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
