@@ -7,6 +7,7 @@
 #include "io/log/arrays/child_messages_internal.h"
 #include "io/log/arrays/child_process_internal.h"
 
+#include <math.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -26,9 +27,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     close(pair[1]);
     bool good = imki_child_list(pair[0], &list, &status, &error);
     require_told(status, &error);
-    for (size_t i = 0; i < list.count; i++)
+    for (size_t i = 0; i < list.count; i++) {
+        const imki_coding *coding = &list.array[i].coding;
+        require(!list.array[i].coded ||
+                (coding->missing_count <= IMKI_MISSING_MAX && isfinite(coding->factor) &&
+                 coding->factor != 0.0 && isfinite(coding->offset)));
         require(list.array[i].type == IMKI_FLOAT64 || list.array[i].type == IMKI_INT64 ||
                 list.array[i].type == IMKI_UINT64);
+    }
     while (good && status == IMK_OK) {
         good = imki_child_rows(pair[0], rows, sizeof rows, &status, &error);
         require_told(status, &error);

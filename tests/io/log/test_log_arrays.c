@@ -171,7 +171,8 @@ static void coded_otherwise(void **state)
 }
 
 /* Numbers for no value, as make_fixtures.py puts them: rows that lack one, by quantity and axis. A
- * float32 is compared with 1e20 as a float32; the origin is the first stamp that there is. */
+ * float32 is compared with 1e20 as a float32; the origin is the first stamp that there is,
+ * and the date in the unit of the time is passed over. */
 static void holes(void **state)
 {
     (void)state;

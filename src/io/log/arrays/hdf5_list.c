@@ -98,6 +98,15 @@ static void take_line(const char *texts, size_t index, size_t size, char *line)
     snprintf(line, size, "%.*s", (int)length, texts ? texts : "");
 }
 
+/* A unit of line `index`. netCDF counts times from a date, "seconds since 2024-05-01" [CF, 4.4]. */
+static void take_unit(const char *texts, size_t index, size_t size, char *unit)
+{
+    take_line(texts, index, size, unit);
+    char *since = strstr(unit, " since ");
+    if (since)
+        *since = '\0';
+}
+
 /* Numbers of a dataset: its unit, or names and units of its columns. */
 static void send_numbers(walk *w, hid_t dataset, const imki_hdf5_array *array,
                          imki_array_message *message)
@@ -110,10 +119,10 @@ static void send_numbers(walk *w, hid_t dataset, const imki_hdf5_array *array,
     const size_t count = imki_hdf5_texts(dataset, unit_names, sizeof units, units);
     const size_t named = imki_hdf5_texts(dataset, label_names, sizeof names, names);
     if (count == 1)
-        take_line(units, 0, sizeof message->unit, message->unit);
+        take_unit(units, 0, sizeof message->unit, message->unit);
     for (size_t i = 0; i < named && named > 1; i++) {
         take_line(names, i, sizeof name, name);
-        take_line(units, count == named ? i : 0, sizeof unit, unit);
+        take_unit(units, count == named ? i : 0, sizeof unit, unit);
         imki_append_text(message->labels, sizeof message->labels, name);
         if ((count == named || count == 1) && unit[0] && !strpbrk(name, "[(")) {
             imki_append_text(message->labels, sizeof message->labels, " [");
@@ -153,7 +162,7 @@ static void send_members(walk *w, hid_t dataset, hid_t type, imki_hdf5_array *ar
             imki_copy_text(message.group, sizeof message.group, path);
             imki_copy_text(message.name, sizeof message.name, name);
             if (count == (size_t)members)
-                take_line(units, (size_t)i, sizeof message.unit, message.unit);
+                take_unit(units, (size_t)i, sizeof message.unit, message.unit);
             array->member = i;
             array->extent[1] = parts;
             send_array(w, array, &message);

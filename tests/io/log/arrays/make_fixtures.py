@@ -147,7 +147,7 @@ with hdf5("coded.h5") as f:
     times, rates, forces = stamps.copy(), gyro.astype("f4"), (accel * 512).astype("i4")
     times[0] = times[5] = -2**63 + 2
     rates[3, 1], rates[4, 0], forces[7, 2], forces[8] = 1e20, -9999, -2**31, 77
-    coded("holes/t", times, "ns", _FillValue=np.int64(-2**63 + 2))
+    coded("holes/t", times, "nanoseconds since 1970-01-01", _FillValue=np.int64(-2**63 + 2))
     coded("holes/gyro", rates, "rad/s", _FillValue=1e20, missing_value=np.array([-9999, 1e20]))
     coded("holes/accel", forces, "m/s^2", scale_factor=1 / 512, missing_value=77.0,
           _FillValue=np.int32(-2**31))
