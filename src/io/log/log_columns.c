@@ -29,8 +29,6 @@ static void advise(const imki_log_cell *cell, const imk_log_settings *settings, 
     static const char rest[] = "columns that --map does not name are not read";
     const imki_log_kind *kind = cell->name.kind;
     char name[48], meant[64] = "", way[200];
-    if (!error)
-        return;
     if (kind->quantity == IMK_QUANTITY_TEMPERATURE) {
         snprintf(error->expected, sizeof error->expected,
                  "write the column in degC or K, or leave it out, with - in its place in "
@@ -85,7 +83,7 @@ static imk_status find_unit(imki_log_cell *cell, const imk_log_settings *setting
     const imk_status status = imki_log_unit_read(unit, kind, &cell->column.unit, error);
     if (status == IMK_ERROR_UNIT_UNKNOWN && cell->column.unit_origin == IMK_UNIT_OF_HEADER)
         advise(cell, settings, error);
-    if (status != IMK_OK && error)
+    if (status != IMK_OK)
         snprintf(error->field, sizeof error->field, "%s",
                  cell->column.unit_origin == IMK_UNIT_OF_SETTINGS ? kind->option
                                                                   : cell->column.name);
@@ -107,11 +105,15 @@ static imk_status make_known(imki_log_cell *cell, const imk_log_settings *settin
              name->axis < 0 ? '\0'
              : number       ? last
                             : "xyz34567"[name->axis]);
-    const imk_status status = find_unit(cell, settings, dates, error);
-    if (status == IMK_ERROR_UNIT_UNKNOWN && !name->kind->option) { /* as without a unit */
+    imk_error why = {.status = IMK_OK};
+    const imk_status status = find_unit(cell, settings, dates, &why);
+    const bool unknown = status == IMK_ERROR_UNIT_UNKNOWN || status == IMK_ERROR_SYNTAX;
+    if (unknown && !name->kind->option) { /* as without a unit */
         make_other(cell);
         return IMK_OK;
     }
+    if (status != IMK_OK && error)
+        *error = why;
     if (status != IMK_OK || cell->lacks_unit)
         return status;
     if (imki_log_unit_fits(name->kind, &column->unit))
