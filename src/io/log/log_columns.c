@@ -10,60 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static void trim(imki_log_piece *piece)
-{
-    while (piece->begin < piece->end && (*piece->begin == ' ' || *piece->begin == '\t'))
-        piece->begin++;
-    while (piece->end > piece->begin && (piece->end[-1] == ' ' || piece->end[-1] == '\t'))
-        piece->end--;
-}
-
-void imki_log_piece_copy(char *target, size_t size, imki_log_piece piece)
-{
-    size_t length = (size_t)(piece.end - piece.begin);
-    if (length >= size) {
-        length = size - 1;
-        while (length > 0 && ((unsigned char)piece.begin[length] & 0xC0) == 0x80)
-            length--;
-    }
-    memcpy(target, piece.begin, length);
-    target[length] = '\0';
-}
-
-/* "[0]" is an index and no unit. */
-static bool is_index(imki_log_piece inside)
-{
-    return inside.end - inside.begin == 1 && *inside.begin >= '0' && *inside.begin <= '9';
-}
-
-/* The bracket that the one at the end closes; NULL: none. */
-static const char *opening(imki_log_piece name)
-{
-    const char close = name.end[-1], open = close == ']' ? '[' : '(';
-    size_t depth = 0;
-    for (const char *p = name.end; p-- > name.begin;) {
-        depth += *p == close;
-        if (*p == open && --depth == 0)
-            return p;
-    }
-    return NULL;
-}
-
-void imki_log_unit_split(imki_log_piece *name, imki_log_piece *unit)
-{
-    trim(name);
-    *unit = (imki_log_piece){name->end, name->end};
-    if (name->begin == name->end || (name->end[-1] != ']' && name->end[-1] != ')'))
-        return;
-    const char *open = opening(*name);
-    if (!open || is_index((imki_log_piece){open + 1, name->end - 1}))
-        return;
-    *unit = (imki_log_piece){open + 1, name->end - 1};
-    name->end = open;
-    trim(name);
-    trim(unit);
-}
-
 /* A column without meaning here: in SI if its unit is known. */
 static void make_other(imki_log_cell *cell)
 {
@@ -83,8 +29,6 @@ static void advise(const imki_log_cell *cell, const imk_log_settings *settings, 
     static const char rest[] = "columns that --map does not name are not read";
     const imki_log_kind *kind = cell->name.kind;
     char name[48], meant[64] = "", way[200];
-    if (!error)
-        return;
     if (kind->quantity == IMK_QUANTITY_TEMPERATURE) {
         snprintf(error->expected, sizeof error->expected,
                  "write the column in degC or K, or leave it out, with - in its place in "
@@ -139,7 +83,7 @@ static imk_status find_unit(imki_log_cell *cell, const imk_log_settings *setting
     const imk_status status = imki_log_unit_read(unit, kind, &cell->column.unit, error);
     if (status == IMK_ERROR_UNIT_UNKNOWN && cell->column.unit_origin == IMK_UNIT_OF_HEADER)
         advise(cell, settings, error);
-    if (status != IMK_OK && error)
+    if (status != IMK_OK)
         snprintf(error->field, sizeof error->field, "%s",
                  cell->column.unit_origin == IMK_UNIT_OF_SETTINGS ? kind->option
                                                                   : cell->column.name);
@@ -161,11 +105,15 @@ static imk_status make_known(imki_log_cell *cell, const imk_log_settings *settin
              name->axis < 0 ? '\0'
              : number       ? last
                             : "xyz34567"[name->axis]);
-    const imk_status status = find_unit(cell, settings, dates, error);
-    if (status == IMK_ERROR_UNIT_UNKNOWN && !name->kind->option) { /* as without a unit */
+    imk_error why = {.status = IMK_OK};
+    const imk_status status = find_unit(cell, settings, dates, &why);
+    const bool unknown = status == IMK_ERROR_UNIT_UNKNOWN || status == IMK_ERROR_SYNTAX;
+    if (unknown && !name->kind->option) { /* as without a unit */
         make_other(cell);
         return IMK_OK;
     }
+    if (status != IMK_OK && error)
+        *error = why;
     if (status != IMK_OK || cell->lacks_unit)
         return status;
     if (imki_log_unit_fits(name->kind, &column->unit))
@@ -281,10 +229,10 @@ void imki_log_cells_name(const imki_log_piece *header, size_t count, imki_log_ce
         imki_log_cell *cell = &cells[i];
         char text[sizeof cell->column.name];
         *cell = (imki_log_cell){.text = header[i]};
-        trim(&cell->text);
-        cell->skipped = cell->text.begin == cell->text.end ||
-                        (cell->text.end - cell->text.begin == 1 && *cell->text.begin == '-');
         imki_log_unit_split(&cell->text, &cell->unit);
+        const size_t length = (size_t)(cell->text.end - cell->text.begin);
+        cell->skipped = cell->unit.begin == cell->unit.end &&
+                        (length == 0 || (length == 1 && *cell->text.begin == '-'));
         imki_log_piece_copy(text, sizeof text, cell->text);
         cell->name = cell->skipped ? (imki_log_name){.axis = -1} : imki_log_name_of(text);
         judge_letter(cell);

@@ -3,8 +3,8 @@
 #ifndef IMUKIT_LOG_COLUMNS_INTERNAL_H
 #define IMUKIT_LOG_COLUMNS_INTERNAL_H
 
-#include "log_names_internal.h"
 #include "log_reader_internal.h"
+#include "names/log_names_internal.h"
 
 /* A cell of the header. */
 typedef struct imki_log_cell {

@@ -94,8 +94,13 @@ static bool has_time(const imki_log_piece *header, size_t count, size_t whole, s
         imki_log_unit_split(&cell, &unit);
         imki_log_piece_copy(text, sizeof text, cell);
         const imki_log_name name = imki_log_name_of(text);
-        if (i != whole && i != rest && name.kind && name.kind->quantity == IMK_QUANTITY_TIME &&
-            name.exact)
+        imk_unit own;
+        if (i == whole || i == rest || !name.kind || name.kind->quantity != IMK_QUANTITY_TIME ||
+            !name.exact)
+            continue;
+        /* "T [degC]" is none. */
+        if (unit.begin == unit.end || imki_log_unit_read(unit, name.kind, &own, NULL) != IMK_OK ||
+            imki_log_unit_fits(name.kind, &own))
             return true;
     }
     return false;

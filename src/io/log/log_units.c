@@ -9,6 +9,61 @@
 #include <stdio.h>
 #include <string.h>
 
+static void trim(imki_log_piece *piece)
+{
+    while (piece->begin < piece->end && (*piece->begin == ' ' || *piece->begin == '\t'))
+        piece->begin++;
+    while (piece->end > piece->begin && (piece->end[-1] == ' ' || piece->end[-1] == '\t'))
+        piece->end--;
+}
+
+void imki_log_piece_copy(char *target, size_t size, imki_log_piece piece)
+{
+    size_t length = (size_t)(piece.end - piece.begin);
+    if (length >= size) {
+        length = size - 1;
+        while (length > 0 && ((unsigned char)piece.begin[length] & 0xC0) == 0x80)
+            length--;
+    }
+    memcpy(target, piece.begin, length);
+    target[length] = '\0';
+}
+
+/* "[0]" is an index and no unit. */
+static bool is_index(imki_log_piece inside)
+{
+    return inside.end - inside.begin == 1 && *inside.begin >= '0' && *inside.begin <= '9';
+}
+
+/* The bracket that the one at the end closes; NULL: none. */
+static const char *opening(imki_log_piece name)
+{
+    const char close = name.end[-1], open = close == ']' ? '[' : '(';
+    size_t depth = 0;
+    for (const char *p = name.end; p > name.begin;) {
+        p--;
+        depth += *p == close;
+        if (*p == open && --depth == 0)
+            return p;
+    }
+    return NULL;
+}
+
+void imki_log_unit_split(imki_log_piece *name, imki_log_piece *unit)
+{
+    trim(name);
+    *unit = (imki_log_piece){name->end, name->end};
+    if (name->begin == name->end || (name->end[-1] != ']' && name->end[-1] != ')'))
+        return;
+    const char *open = opening(*name);
+    if (!open || is_index((imki_log_piece){open + 1, name->end - 1}))
+        return;
+    *unit = (imki_log_piece){open + 1, name->end - 1};
+    name->end = open;
+    trim(name);
+    trim(unit);
+}
+
 imki_log_piece imki_log_unit_of_name(imki_log_piece name)
 {
     char text[48];

@@ -42,8 +42,8 @@ bool imki_tell_unused(size_t count, const imk_log_column *columns, int kinds,
                       imk_findings *findings);
 /* The same of a record whose channels are chosen. */
 void imki_even_record_unused(const imk_even_record *record, imk_findings *findings);
-/* Tell of columns that depend on the axes of the sensors and kept their own where these were turned:
- * attitudes, velocities, vectors that are of no sensor. */
+/* Tell of columns that depend on the axes of the sensors and kept their own where these were
+ * turned: attitudes, velocities, vectors that are of no sensor. */
 void imki_tell_not_turned(const imk_record_source *source, size_t count,
                           const imk_log_column *columns, imk_findings *findings);
 

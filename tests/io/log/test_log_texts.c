@@ -4,8 +4,8 @@
  * agree with the file; and logs written as in the EuRoC data set. */
 #include "check.h"
 
-#include "io/log/log_names_internal.h"
 #include "io/log/log_stamps_internal.h"
+#include "io/log/names/log_names_internal.h"
 
 #include "imukit/io.h"
 

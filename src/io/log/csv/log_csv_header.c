@@ -225,14 +225,26 @@ static imki_log_piece without_brackets(imki_log_piece cell)
     return brackets ? (imki_log_piece){cell.begin + 1, cell.end - 1} : cell;
 }
 
-/* Is it one that a column of this name may have, or any? Of what is not UTF-8 the unit is told
- * later. */
-static bool is_unit_for(imki_log_piece name, imki_log_piece cell)
+/* The kind of a column by its name and its unit: that of the header, or else the one below it. */
+static const imki_log_kind *kind_below(imki_log_piece header, imki_log_piece below)
 {
-    char text[48];
+    char text[IMKI_LOG_NAME_SIZE], name[48], unit[60];
+    imki_log_piece bare = header, own;
+    imki_log_cell cell;
+    imki_log_unit_split(&bare, &own);
+    imki_log_piece_copy(name, sizeof name, bare);
+    imki_log_piece_copy(unit, sizeof unit, own.begin < own.end ? own : below);
+    snprintf(text, sizeof text, "%s [%s]", name, unit);
+    const imki_log_piece whole = {text, text + strlen(text)};
+    imki_log_cells_name(&whole, 1, &cell);
+    return cell.name.kind;
+}
+
+/* Is it one that the column may have, or any? Of what is not UTF-8 the unit is told later. */
+static bool is_unit_for(imki_log_piece header, imki_log_piece cell)
+{
     imk_unit unit;
-    imki_log_piece_copy(text, sizeof text, name);
-    const imki_log_kind *kind = imki_log_name_of(text).kind;
+    const imki_log_kind *kind = kind_below(header, cell);
     return imk_unit_parse(cell.begin, cell.end, &unit, NULL) == IMK_OK ||
            (kind && imki_log_unit_read(cell, kind, &unit, NULL) == IMK_OK) ||
            !imki_csv_is_utf8(cell);
@@ -245,13 +257,12 @@ static bool is_unit_row(const imki_csv_header *header, const imki_log_piece *cel
     size_t units = 0;
     for (size_t i = 0; i < count; i++) {
         char text[40];
-        imki_log_piece cell = without_brackets(cells[i]), own, name = header->cell[i];
-        imki_log_unit_split(&name, &own);
+        const imki_log_piece cell = without_brackets(cells[i]);
         imki_log_piece_copy(text, sizeof text, cell);
         bool is_none = false;
         for (size_t k = 0; k < sizeof none / sizeof none[0]; k++)
             is_none = is_none || strcmp(text, none[k]) == 0;
-        const bool is_unit = is_unit_for(name, cell);
+        const bool is_unit = is_unit_for(header->cell[i], cell);
         if (!is_none && !is_unit)
             return false;
         units += is_unit && !is_none;
@@ -275,8 +286,8 @@ static imk_status take_unit(imki_csv_header *header, size_t index, imki_log_piec
         snprintf(found, sizeof found,
                  "%.16s in the line of units does not agree with [%s] in the header", unit,
                  own_text);
-        return imki_log_units_agree("", imki_log_name_of(name).kind, bare, cell, own, NULL) ==
-                       IMK_OK
+        return imki_log_units_agree("", kind_below(header->cell[index], cell), bare, cell, own,
+                                    NULL) == IMK_OK
                    ? IMK_OK
                    : imk_error_set(error, IMK_ERROR_CONFLICT, name, found,
                                    "correct the one that is wrong");
