@@ -13,6 +13,8 @@
 
 #include <stdlib.h>
 
+enum { HEADER_MAX = 1 << 20 };
+
 /* The next field of a header. @return false: there is none, or it is damaged (*at is not end) */
 static bool take_field(const uint8_t **at, const uint8_t *end, imki_log_piece *name,
                        imki_log_piece *value)
@@ -115,9 +117,68 @@ static void give(const imki_bag_record *record, imki_ros_message *message)
                                   .size = (size_t)record->size};
 }
 
+static const imki_ros_shape none = {.due = 0};
+
+static imki_ros_shape chunk_shape(const imki_bag_record *record, bool strict)
+{
+    enum { CHUNK = 2 };
+    const imki_ros_packing packing = imki_ros_packing_named(record->header.compression);
+    const bool plain = packing == IMKI_ROS_PLAIN;
+    if (!record->header.compression.begin || (plain && record->size != record->header.size) ||
+        (!plain && record->size > IMKI_ROS_RECORD_MAX) ||
+        (strict && packing == IMKI_ROS_PACKING_UNKNOWN))
+        return none;
+    return (imki_ros_shape){.size = record->head + record->size, .weight = CHUNK, .proven = plain};
+}
+
+/* @param at_hand  of the data, too */
+static imki_ros_shape connection_shape(const imki_bag_record *record, size_t at_hand)
+{
+    enum { LINKED = 3, DATA_MAX = 1 << 20 };
+    const uint64_t all = record->head + record->size;
+    imki_bag_header about;
+    if (record->header.connection > UINT32_MAX || record->size > DATA_MAX)
+        return none;
+    if (all > at_hand)
+        return (imki_ros_shape){.due = (size_t)all};
+    if (!take_header(record->data, (size_t)record->size, &about) || !about.type.begin)
+        return none;
+    return (imki_ros_shape){.size = all, .weight = LINKED, .proven = true};
+}
+
+/* As imki_ros_container.shape. */
+static imki_ros_shape shape(imki_ros_log *log, const uint8_t *at, size_t at_hand, bool strict)
+{
+    enum { LEAST = 8, INDEX_ENTRY = 12, INFO_ENTRY = 8 }; /* a field "op=" and its length */
+    const uint32_t header = imki_get_u32(at);
+    imki_bag_record record;
+    if (header < LEAST || header > HEADER_MAX || imki_get_u32(at + 4) > header - 4)
+        return none;
+    if (at_hand < (size_t)header + 8)
+        return (imki_ros_shape){.due = (size_t)header + 8};
+    if (!imki_bag_record_take(at, at_hand, false, &record))
+        return none;
+    const imki_bag_header *h = &record.header;
+    const bool index = h->op == IMKI_BAG_INDEX, info = h->op == IMKI_BAG_CHUNK_INFO;
+    const bool message = h->op == IMKI_BAG_MESSAGE;
+    if (h->op == IMKI_BAG_CHUNK)
+        return chunk_shape(&record, strict);
+    if (h->op == IMKI_BAG_CONNECTION)
+        return connection_shape(&record, at_hand);
+    if ((index || info) && record.size != h->count * (index ? INDEX_ENTRY : INFO_ENTRY))
+        return none;
+    if (h->op == IMKI_BAG_HEAD && (h->connection <= UINT32_MAX || h->compression.begin))
+        return none;
+    if (message && (h->connection > UINT32_MAX || record.size > IMKI_ROS_RECORD_MAX ||
+                    (strict && !imki_ros_topic_of(log, (uint32_t)h->connection))))
+        return none;
+    return (imki_ros_shape){.size = record.head + record.size,
+                            .weight = index || info || message || !strict,
+                            .proven = index || info};
+}
+
 imk_status imki_bag_head(imki_ros_log *log, imki_bag_record *record, bool *found, imk_error *error)
 {
-    enum { HEADER_MAX = 1 << 20 };
     static const char remedy[] = "copy the file again, or mend it: rosbag fix OLD.bag NEW.bag";
     imki_log_text *text = log->text;
     bool whole;
@@ -207,8 +268,11 @@ static imk_status next_outside(imki_bag *bag, imki_ros_message *message, bool *f
 {
     imki_ros_log *log = &bag->log;
     imki_bag_record record;
-    bool there, whole = true, enough = false;
-    imk_status status = imki_bag_head(log, &record, &there, error);
+    bool there, sound, whole = true, enough = false;
+    imk_status status = imki_ros_go_on(log, &sound, over, error);
+    if (status != IMK_OK || !sound)
+        return status;
+    status = imki_bag_head(log, &record, &there, error);
     if (status == IMK_OK && there)
         imki_ros_mark(log, record.head + record.size, &enough);
     *over = !there || enough;
@@ -260,7 +324,7 @@ static imk_status back(imki_ros_log *log, imk_error *error)
 
 static imk_status open_bag(imk_log_reader *reader, imk_error *error)
 {
-    static const imki_ros_container container = {next, back};
+    static const imki_ros_container container = {next, back, shape};
     enum { MAGIC = 13 };
     imki_log_text *text = &reader->text;
     imki_bag_record record;
@@ -274,12 +338,12 @@ static imk_status open_bag(imk_log_reader *reader, imk_error *error)
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "the bag is not of version 2.0",
                              "bring it to version 2.0: rosbag fix OLD.bag NEW.bag");
     text->next += MAGIC;
-    imk_status status = imki_bag_head(&bag->log, &record, &found, error);
+    /* Without its head, a bag is read as one that was not closed. */
+    imk_status status = imki_bag_head_or_end(&bag->log, &record, &found, error);
     if (status != IMK_OK)
         return status;
     if (!found || record.header.op != IMKI_BAG_HEAD)
-        return imk_error_set(error, IMK_ERROR_FORMAT, "", "the bag has no head",
-                             "copy the file again");
+        record.header = (imki_bag_header){0};
     const imki_log_piece cipher = record.header.encryptor;
     if (cipher.end > cipher.begin && !imki_piece_is(cipher, "rosbag/NoEncryptor"))
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "the bag is encrypted",
@@ -298,7 +362,6 @@ static void close_bag(imk_log_reader *reader)
     if (!bag)
         return;
     imki_ros_chunk_free(&bag->inside.unpacked);
-    free(bag->places.place);
     imki_ros_close(&bag->log);
 }
 
