@@ -13,7 +13,10 @@
 
 #include <stdlib.h>
 
-enum { HEADER_MAX = 1 << 20 };
+enum {
+    HEADER_MAX = 1 << 20,
+    FIELDS_MAX = 64 /* so that no search takes long; there are up to ten */
+};
 
 /* The next field of a header. @return false: there is none, or it is damaged (*at is not end) */
 static bool take_field(const uint8_t **at, const uint8_t *end, imki_log_piece *name,
@@ -58,7 +61,7 @@ static bool take_header(const uint8_t *at, size_t size, imki_bag_header *header)
     const uint8_t *end = at + size;
     imki_log_piece name, value;
     *header = (imki_bag_header){.connection = IMKI_BAG_NO_CONNECTION};
-    while (take_field(&at, end, &name, &value)) {
+    for (int left = FIELDS_MAX; left > 0 && take_field(&at, end, &name, &value); left--) {
         const size_t length = (size_t)(value.end - value.begin);
         const uint8_t *bytes = (const uint8_t *)value.begin;
         for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
@@ -169,11 +172,13 @@ static imki_ros_shape shape(imki_ros_log *log, const uint8_t *at, size_t at_hand
         return none;
     if (h->op == IMKI_BAG_HEAD && (h->connection <= UINT32_MAX || h->compression.begin))
         return none;
-    if (message && (h->connection > UINT32_MAX || record.size > IMKI_ROS_RECORD_MAX ||
-                    (strict && !imki_ros_topic_of(log, (uint32_t)h->connection))))
+    if (message && (h->connection > UINT32_MAX || record.size > IMKI_ROS_RECORD_MAX))
         return none;
+    if (message)
+        return imki_ros_message_shape(log, (uint32_t)h->connection, at, at_hand, record.head,
+                                      record.size, strict);
     return (imki_ros_shape){.size = record.head + record.size,
-                            .weight = index || info || message || !strict,
+                            .weight = index || info || !strict,
                             .proven = index || info};
 }
 
@@ -206,10 +211,11 @@ imk_status imki_bag_head(imki_ros_log *log, imki_bag_record *record, bool *found
 static imk_status need_data(imki_ros_log *log, imki_bag_record *record, bool *whole,
                             imk_error *error)
 {
+    const uint8_t *data = record->data;
     const imk_status status = imki_ros_need(log, record->head + record->size, whole, error);
     const uint8_t *at = (const uint8_t *)log->text->next;
     const size_t at_hand = (size_t)(log->text->end - log->text->next);
-    if (status == IMK_OK) /* the window has moved */
+    if (status == IMK_OK && data != at + record->head) /* the window has moved */
         imki_bag_record_take(at, at_hand, false, record);
     return status;
 }
@@ -253,13 +259,10 @@ static imk_status next_inside(imki_bag *bag, imki_ros_message *message, bool *fo
                                                    : IMK_OK;
 }
 
-/* Records that hold no messages. One of no known kind, or with what only a chunk has, was damaged,
- * and what it held is lost. */
-static bool may_be_passed(const imki_bag_header *header)
+/* Records that hold no messages. What another one held is lost. */
+static bool may_be_passed(uint64_t op)
 {
-    const bool index = header->op == IMKI_BAG_HEAD || header->op == IMKI_BAG_INDEX ||
-                       header->op == IMKI_BAG_CHUNK_INFO;
-    return index && header->compression.begin == NULL;
+    return op == IMKI_BAG_HEAD || op == IMKI_BAG_INDEX || op == IMKI_BAG_CHUNK_INFO;
 }
 
 /* A record of the file. *over: there are no more. */
@@ -284,7 +287,7 @@ static imk_status next_outside(imki_bag *bag, imki_ros_message *message, bool *f
         return enter_chunk(bag, &record, error);
     const bool message_found = record.header.op == IMKI_BAG_MESSAGE;
     if (!message_found && record.header.op != IMKI_BAG_CONNECTION) {
-        if (!may_be_passed(&record.header))
+        if (!may_be_passed(record.header.op))
             imki_log_damage(log->reader, log->rows);
         status = imki_ros_skip(log, record.head + record.size, &whole, error);
         *over = !whole;

@@ -91,9 +91,6 @@ imk_status imki_mcap_next(imki_mcap *mcap, imki_ros_message *message, bool *foun
                           imk_error *error);
 void imki_mcap_stop(imki_mcap *mcap);
 
-/* Have the head of a record at hand: kind and size. *found is false at the end. */
-imk_status imki_mcap_head(imki_ros_log *log, imki_mcap_record *record, bool *found,
-                          imk_error *error);
 /* Have the record whose head is at hand. */
 imk_status imki_mcap_need(imki_ros_log *log, imki_mcap_record *record, bool *whole,
                           imk_error *error);

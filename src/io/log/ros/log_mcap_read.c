@@ -108,8 +108,9 @@ imk_status imki_mcap_define(imki_mcap *mcap, const imki_mcap_record *record, imk
 
 /* ---- records ---- */
 
-imk_status imki_mcap_head(imki_ros_log *log, imki_mcap_record *record, bool *found,
-                          imk_error *error)
+/* Have the head of a record at hand: kind and size. *found is false at the end. */
+static imk_status need_head(imki_ros_log *log, imki_mcap_record *record, bool *found,
+                            imk_error *error)
 {
     imki_log_text *text = log->text;
     imk_status status = imki_ros_need(log, IMKI_MCAP_HEAD, found, error);
@@ -268,7 +269,7 @@ static imk_status next_outside(imki_mcap *mcap, imki_ros_message *message, bool 
     imk_status status = imki_ros_go_on(log, &sound, over, error);
     if (status != IMK_OK || !sound)
         return status;
-    status = imki_mcap_head(log, &record, &there, error);
+    status = need_head(log, &record, &there, error);
     if (status == IMK_OK && there)
         imki_ros_mark(log, IMKI_MCAP_HEAD + record.size, &enough);
     *over = !there || enough;

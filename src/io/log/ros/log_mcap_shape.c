@@ -34,13 +34,13 @@ static imki_ros_shape message_shape(imki_ros_log *log, const uint8_t *at, size_t
     enum { CHANNEL = IMKI_MCAP_HEAD, TIMES = CHANNEL + 6, BEHIND = TIMES + 16 };
     if (size < IMKI_MCAP_MESSAGE_MEMBERS || size > IMKI_ROS_RECORD_MAX)
         return none;
-    if (strict && at_hand < BEHIND)
+    if (at_hand < BEHIND)
         return (imki_ros_shape){.due = BEHIND};
     if (strict &&
-        (!imki_ros_topic_of(log, imki_get_u16(at + CHANNEL)) ||
-         imki_get_u64(at + TIMES) > INT64_MAX || imki_get_u64(at + TIMES + 8) > INT64_MAX))
+        (imki_get_u64(at + TIMES) > INT64_MAX || imki_get_u64(at + TIMES + 8) > INT64_MAX))
         return none;
-    return (imki_ros_shape){.size = IMKI_MCAP_HEAD + size, .weight = 1};
+    return imki_ros_message_shape(log, imki_get_u16(at + CHANNEL), at, at_hand, BEHIND,
+                                  size - IMKI_MCAP_MESSAGE_MEMBERS, strict);
 }
 
 /* Of a chunk whose lengths agree. */

@@ -23,6 +23,8 @@ typedef struct imki_imu {
 
 /* Read a message. @return whether it is one, as a whole */
 bool imki_ros_imu_read(imki_ros_encoding encoding, const uint8_t *data, size_t size, imki_imu *imu);
+/* Is it as long as the texts in it say? */
+bool imki_ros_imu_fits(imki_ros_encoding encoding, const uint8_t *data, size_t size);
 
 enum { IMKI_ROS_IMU_MAX = 336 }; /* bytes of a message that is written */
 

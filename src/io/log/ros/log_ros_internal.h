@@ -221,6 +221,9 @@ bool imki_ros_place_next(imki_ros_places *places, uint64_t here, uint64_t *place
 
 /* ---- log_ros_search.c ------------------------------------------------------------------------ */
 
+/* The shape of a message with a head of `head` bytes before its `size` bytes. */
+imki_ros_shape imki_ros_message_shape(imki_ros_log *log, uint32_t channel, const uint8_t *at,
+                                      size_t at_hand, size_t head, uint64_t size, bool strict);
 /* Is the record at text->next to be believed? If not, this is told as damage, and the text goes to
  * the next place at which records begin.
  * @param sound  the text stays where it is; also at the end of the log

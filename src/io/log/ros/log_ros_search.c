@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Where the records of a log go on behind damage.
  *
- * A record is believed if its members agree with its length, or if another one stands where it
- * ends. Otherwise its own length may be damaged: if a place at which records begin is within it,
- * it is left out, and the log goes on there. Such a place is a chunk or a definition whose members
- * agree, or several records of which each begins where the one before ends. A file with an index
- * knows the places of its chunks. */
+ * A record is believed if its members agree with its length, as those of an Imu do, or if another
+ * one stands where it ends. Otherwise its own length may be damaged: if a place at which records
+ * begin is within it, it is left out, and the log goes on there. Such a place is a chunk or a
+ * definition whose members agree, or several records of which each begins where the one before
+ * ends. A file with an index knows the places of its chunks. */
 #include "log_ros_internal.h"
 
 enum {
@@ -13,6 +13,20 @@ enum {
     ENOUGH = 3,            /* weight of the records of a place */
     UNPROVEN_MAX = 1 << 24 /* bytes that are looked through for what stands behind a message */
 };
+
+imki_ros_shape imki_ros_message_shape(imki_ros_log *log, uint32_t channel, const uint8_t *at,
+                                      size_t at_hand, size_t head, uint64_t size, bool strict)
+{
+    enum { IMU_MAX = 1 << 12 };
+    const imki_ros_topic *topic = imki_ros_topic_of(log, channel);
+    imki_ros_shape shape = {.size = head + size, .weight = topic || !strict};
+    if (!topic || topic->encoding == IMKI_ROS_OTHER || size > IMU_MAX)
+        return shape;
+    if (at_hand < shape.size)
+        return (imki_ros_shape){.due = (size_t)shape.size};
+    shape.proven = imki_ros_imu_fits(topic->encoding, at + head, (size_t)size);
+    return shape;
+}
 
 /* What stands `offset` bytes behind text->next. @param strict  as of imki_ros_container.shape */
 static imk_status shape_at(imki_ros_log *log, uint64_t offset, bool strict, imki_ros_shape *shape,
