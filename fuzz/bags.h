@@ -9,6 +9,9 @@
 
 #include "imukit/log.h"
 
+#include <stdio.h>
+#include <unistd.h>
+
 static inline void bags_read(imk_log_reader *reader, size_t piece)
 {
     enum { ROWS = 64 };
@@ -59,6 +62,28 @@ static inline void bags_check(const uint8_t *data, size_t size, const char *form
     if (status == IMK_OK)
         bags_read(reader, 64);
     imk_log_close(reader);
+}
+
+/* From a pipe, in which nothing can be looked up. */
+static inline void bags_check_pipe(const uint8_t *data, size_t size, const char *format)
+{
+    enum { HOLDS = 1 << 16 }; /* bytes that a pipe takes before they are read */
+    imk_log_settings settings = imk_log_default();
+    imk_log_reader *reader = NULL;
+    imk_error error = {.status = IMK_OK};
+    char path[32];
+    int ends[2];
+    settings.format = format;
+    if (size > HOLDS || pipe(ends) != 0)
+        return;
+    require(write(ends[1], data, size) == (ssize_t)size);
+    close(ends[1]);
+    snprintf(path, sizeof path, "/dev/fd/%d", ends[0]);
+    require_told(imk_log_open(path, &settings, &reader, &error), &error);
+    if (reader)
+        bags_read(reader, 64);
+    imk_log_close(reader);
+    close(ends[0]);
 }
 
 #endif

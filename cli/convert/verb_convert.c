@@ -198,8 +198,8 @@ static int convert_log(convert_options *o, const char *in, const char *out)
     const imk_log_findings read = imk_log_findings_get(reader);
     written.origin = read.time_origin_nanoseconds;
     if (read.time_origin != 0 && !written.euroc && !imk_log_format_of(out)->keeps_epoch)
-        command_note("the times of %s count from %.3f s, which is 0 in %s", in, read.time_origin,
-                     out);
+        command_note("the times count from %.3f s, which is 0 in what is written",
+                     read.time_origin);
     threaded_job t;
     threaded_job_begin(&t, in, o->threads.value);
     const imk_record_source source = imk_log_source(reader);

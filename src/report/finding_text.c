@@ -86,7 +86,7 @@ static const struct message {
     {"damaged",
      "{3?}{0} row{0s} cannot be read: left out, the first behind row {2} of {1} (line {3}{?}{4?}, "
      "column {4}{?}{3?}){?}{3!}{0} row{0s}, messages or blocks of the file cannot be read and are "
-     "left out, the first behind row {2} of {1}{?}"},
+     "left out (none if it is the checksum of a whole file), the first behind row {2} of {1}{?}"},
     {"headers", "the header stands {0} more time{0s} between the rows, first behind row {1}, as "
                 "where files were put together: left out; give such parts as logs of their own if "
                 "they are not one record"},

@@ -210,7 +210,7 @@ static void test_epoch(void **state)
         assert_string_equal(err, "");
     }
     assert_int_equal(run("$I convert data.csv c.csv"), 0);
-    check_contains(err, "the times of data.csv count from 1403636579.759 s, which is 0 in c.csv",
+    check_contains(err, "the times count from 1403636579.759 s, which is 0 in what is written",
                    "note");
     assert_int_equal(sweep(), 7);
 }

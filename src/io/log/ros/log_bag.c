@@ -13,6 +13,11 @@
 
 #include <stdlib.h>
 
+enum {
+    HEADER_MAX = 1 << 20,
+    FIELDS_MAX = 64 /* so that no search takes long; there are up to ten */
+};
+
 /* The next field of a header. @return false: there is none, or it is damaged (*at is not end) */
 static bool take_field(const uint8_t **at, const uint8_t *end, imki_log_piece *name,
                        imki_log_piece *value)
@@ -56,7 +61,7 @@ static bool take_header(const uint8_t *at, size_t size, imki_bag_header *header)
     const uint8_t *end = at + size;
     imki_log_piece name, value;
     *header = (imki_bag_header){.connection = IMKI_BAG_NO_CONNECTION};
-    while (take_field(&at, end, &name, &value)) {
+    for (int left = FIELDS_MAX; left > 0 && take_field(&at, end, &name, &value); left--) {
         const size_t length = (size_t)(value.end - value.begin);
         const uint8_t *bytes = (const uint8_t *)value.begin;
         for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
@@ -115,9 +120,70 @@ static void give(const imki_bag_record *record, imki_ros_message *message)
                                   .size = (size_t)record->size};
 }
 
+static const imki_ros_shape none = {.due = 0};
+
+static imki_ros_shape chunk_shape(const imki_bag_record *record, bool strict)
+{
+    enum { CHUNK = 2 };
+    const imki_ros_packing packing = imki_ros_packing_named(record->header.compression);
+    const bool plain = packing == IMKI_ROS_PLAIN;
+    if (!record->header.compression.begin || (plain && record->size != record->header.size) ||
+        (!plain && record->size > IMKI_ROS_RECORD_MAX) ||
+        (strict && packing == IMKI_ROS_PACKING_UNKNOWN))
+        return none;
+    return (imki_ros_shape){.size = record->head + record->size, .weight = CHUNK, .proven = plain};
+}
+
+/* @param at_hand  of the data, too */
+static imki_ros_shape connection_shape(const imki_bag_record *record, size_t at_hand)
+{
+    enum { LINKED = 3, DATA_MAX = 1 << 20 };
+    const uint64_t all = record->head + record->size;
+    imki_bag_header about;
+    if (record->header.connection > UINT32_MAX || record->size > DATA_MAX)
+        return none;
+    if (all > at_hand)
+        return (imki_ros_shape){.due = (size_t)all};
+    if (!take_header(record->data, (size_t)record->size, &about) || !about.type.begin)
+        return none;
+    return (imki_ros_shape){.size = all, .weight = LINKED, .proven = true};
+}
+
+/* As imki_ros_container.shape. */
+static imki_ros_shape shape(imki_ros_log *log, const uint8_t *at, size_t at_hand, bool strict)
+{
+    enum { LEAST = 8, INDEX_ENTRY = 12, INFO_ENTRY = 8 }; /* a field "op=" and its length */
+    const uint32_t header = imki_get_u32(at);
+    imki_bag_record record;
+    if (header < LEAST || header > HEADER_MAX || imki_get_u32(at + 4) > header - 4)
+        return none;
+    if (at_hand < (size_t)header + 8)
+        return (imki_ros_shape){.due = (size_t)header + 8};
+    if (!imki_bag_record_take(at, at_hand, false, &record))
+        return none;
+    const imki_bag_header *h = &record.header;
+    const bool index = h->op == IMKI_BAG_INDEX, info = h->op == IMKI_BAG_CHUNK_INFO;
+    const bool message = h->op == IMKI_BAG_MESSAGE;
+    if (h->op == IMKI_BAG_CHUNK)
+        return chunk_shape(&record, strict);
+    if (h->op == IMKI_BAG_CONNECTION)
+        return connection_shape(&record, at_hand);
+    if ((index || info) && record.size != h->count * (index ? INDEX_ENTRY : INFO_ENTRY))
+        return none;
+    if (h->op == IMKI_BAG_HEAD && (h->connection <= UINT32_MAX || h->compression.begin))
+        return none;
+    if (message && (h->connection > UINT32_MAX || record.size > IMKI_ROS_RECORD_MAX))
+        return none;
+    if (message)
+        return imki_ros_message_shape(log, (uint32_t)h->connection, at, at_hand, record.head,
+                                      record.size, strict);
+    return (imki_ros_shape){.size = record.head + record.size,
+                            .weight = index || info || !strict,
+                            .proven = index || info};
+}
+
 imk_status imki_bag_head(imki_ros_log *log, imki_bag_record *record, bool *found, imk_error *error)
 {
-    enum { HEADER_MAX = 1 << 20 };
     static const char remedy[] = "copy the file again, or mend it: rosbag fix OLD.bag NEW.bag";
     imki_log_text *text = log->text;
     bool whole;
@@ -145,10 +211,11 @@ imk_status imki_bag_head(imki_ros_log *log, imki_bag_record *record, bool *found
 static imk_status need_data(imki_ros_log *log, imki_bag_record *record, bool *whole,
                             imk_error *error)
 {
+    const uint8_t *data = record->data;
     const imk_status status = imki_ros_need(log, record->head + record->size, whole, error);
     const uint8_t *at = (const uint8_t *)log->text->next;
     const size_t at_hand = (size_t)(log->text->end - log->text->next);
-    if (status == IMK_OK) /* the window has moved */
+    if (status == IMK_OK && data != at + record->head) /* the window has moved */
         imki_bag_record_take(at, at_hand, false, record);
     return status;
 }
@@ -192,13 +259,10 @@ static imk_status next_inside(imki_bag *bag, imki_ros_message *message, bool *fo
                                                    : IMK_OK;
 }
 
-/* Records that hold no messages. One of no known kind, or with what only a chunk has, was damaged,
- * and what it held is lost. */
-static bool may_be_passed(const imki_bag_header *header)
+/* Records that hold no messages. What another one held is lost. */
+static bool may_be_passed(uint64_t op)
 {
-    const bool index = header->op == IMKI_BAG_HEAD || header->op == IMKI_BAG_INDEX ||
-                       header->op == IMKI_BAG_CHUNK_INFO;
-    return index && header->compression.begin == NULL;
+    return op == IMKI_BAG_HEAD || op == IMKI_BAG_INDEX || op == IMKI_BAG_CHUNK_INFO;
 }
 
 /* A record of the file. *over: there are no more. */
@@ -207,8 +271,11 @@ static imk_status next_outside(imki_bag *bag, imki_ros_message *message, bool *f
 {
     imki_ros_log *log = &bag->log;
     imki_bag_record record;
-    bool there, whole = true, enough = false;
-    imk_status status = imki_bag_head(log, &record, &there, error);
+    bool there, sound, whole = true, enough = false;
+    imk_status status = imki_ros_go_on(log, &sound, over, error);
+    if (status != IMK_OK || !sound)
+        return status;
+    status = imki_bag_head(log, &record, &there, error);
     if (status == IMK_OK && there)
         imki_ros_mark(log, record.head + record.size, &enough);
     *over = !there || enough;
@@ -220,7 +287,7 @@ static imk_status next_outside(imki_bag *bag, imki_ros_message *message, bool *f
         return enter_chunk(bag, &record, error);
     const bool message_found = record.header.op == IMKI_BAG_MESSAGE;
     if (!message_found && record.header.op != IMKI_BAG_CONNECTION) {
-        if (!may_be_passed(&record.header))
+        if (!may_be_passed(record.header.op))
             imki_log_damage(log->reader, log->rows);
         status = imki_ros_skip(log, record.head + record.size, &whole, error);
         *over = !whole;
@@ -260,7 +327,7 @@ static imk_status back(imki_ros_log *log, imk_error *error)
 
 static imk_status open_bag(imk_log_reader *reader, imk_error *error)
 {
-    static const imki_ros_container container = {next, back};
+    static const imki_ros_container container = {next, back, shape};
     enum { MAGIC = 13 };
     imki_log_text *text = &reader->text;
     imki_bag_record record;
@@ -274,12 +341,12 @@ static imk_status open_bag(imk_log_reader *reader, imk_error *error)
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "the bag is not of version 2.0",
                              "bring it to version 2.0: rosbag fix OLD.bag NEW.bag");
     text->next += MAGIC;
-    imk_status status = imki_bag_head(&bag->log, &record, &found, error);
+    /* Without its head, a bag is read as one that was not closed. */
+    imk_status status = imki_bag_head_or_end(&bag->log, &record, &found, error);
     if (status != IMK_OK)
         return status;
     if (!found || record.header.op != IMKI_BAG_HEAD)
-        return imk_error_set(error, IMK_ERROR_FORMAT, "", "the bag has no head",
-                             "copy the file again");
+        record.header = (imki_bag_header){0};
     const imki_log_piece cipher = record.header.encryptor;
     if (cipher.end > cipher.begin && !imki_piece_is(cipher, "rosbag/NoEncryptor"))
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "the bag is encrypted",
@@ -298,7 +365,6 @@ static void close_bag(imk_log_reader *reader)
     if (!bag)
         return;
     imki_ros_chunk_free(&bag->inside.unpacked);
-    free(bag->places.place);
     imki_ros_close(&bag->log);
 }
 

@@ -12,17 +12,18 @@ static bool take_chunk(imki_bag *bag, const imki_bag_record *record, imk_status 
         return false;
     for (uint64_t i = 0; i < h->count; i++) {
         const uint32_t connection = imki_get_u32(record->data + 8 * i);
+        if (!imki_ros_topic_of(&bag->log, connection))
+            return false;
         imki_ros_topic_count(&bag->log, connection, imki_get_u32(record->data + 8 * i + 4));
         imki_ros_topic_times(&bag->log, connection, imki_bag_time(h->begin), imki_bag_time(h->end));
     }
-    if (!imki_ros_place_add(&bag->places, h->chunk_place))
+    if (!imki_ros_place_add(&bag->log.places, h->chunk_place))
         *status = imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     return true;
 }
 
-/* A damaged record is the end here, where it is no matter to tell. */
-static imk_status head_or_end(imki_ros_log *log, imki_bag_record *record, bool *there,
-                              imk_error *error)
+imk_status imki_bag_head_or_end(imki_ros_log *log, imki_bag_record *record, bool *there,
+                                imk_error *error)
 {
     imk_error reason = {.status = IMK_OK};
     const imk_status status = imki_bag_head(log, record, there, &reason);
@@ -38,7 +39,7 @@ static imk_status take_record(imki_bag *bag, uint64_t op, bool *intact, imk_erro
     imki_bag_record record;
     bool whole = false;
     *intact = false;
-    imk_status status = head_or_end(log, &record, &whole, error);
+    imk_status status = imki_bag_head_or_end(log, &record, &whole, error);
     if (status != IMK_OK || !whole || record.header.op != op || record.size > 1 << 24)
         return status;
     status = imki_ros_need(log, record.head + record.size, &whole, error);
@@ -67,12 +68,13 @@ imk_status imki_bag_index_read(imki_bag *bag, const imki_bag_header *head, imk_e
         status = take_record(bag, IMKI_BAG_CONNECTION, &intact, error);
     for (uint64_t i = 0; i < chunks && intact && status == IMK_OK; i++)
         status = take_record(bag, IMKI_BAG_CHUNK_INFO, &intact, error);
+    intact = intact && imki_log_text_place(log->text) == imki_ros_size(log);
     log->indexed = log->counted = intact;
     log->reader->cut_short = false;
     log->reader->damaged = log->reader->first_damaged = 0;
     if (!intact) {
         imki_ros_topic_uncount(log);
-        bag->places.count = 0;
+        bag->log.places.count = 0;
     }
     return status == IMK_OK ? imki_log_text_seek(log->text, bag->first, error) : status;
 }
@@ -86,7 +88,7 @@ static imk_status walk(imki_bag *bag, uint64_t target, uint64_t *place, imk_erro
     imk_status status = imki_log_text_seek(log->text, bag->first, error);
     *place = bag->first;
     while (status == IMK_OK && there) {
-        status = head_or_end(log, &record, &there, error);
+        status = imki_bag_head_or_end(log, &record, &there, error);
         if (status != IMK_OK || !there)
             break;
         if (record.header.op == IMKI_BAG_CHUNK || record.header.op == IMKI_BAG_MESSAGE)
@@ -106,7 +108,7 @@ imk_status imki_bag_seek(imk_log_reader *reader, double fraction, imk_error *err
     const uint64_t target = (uint64_t)(fraction * (double)imki_ros_size(&bag->log));
     uint64_t place;
     imk_status status = IMK_OK;
-    if (!imki_ros_place_find(&bag->places, target, &place))
+    if (!imki_ros_place_find(&bag->log.places, target, &place))
         status = walk(bag, target, &place, error);
     bag->inside.at = NULL;
     bag->log.moved = true;

@@ -37,7 +37,6 @@ typedef struct imki_bag {
     imki_ros_inside inside;
     uint64_t index_place; /* by its head; 0: it was not closed */
     uint64_t first;       /* place of the first record behind the head */
-    imki_ros_places places;
 } imki_bag;
 
 /* Seconds and nanoseconds, as one number of 8 bytes, in nanoseconds. */
@@ -50,6 +49,9 @@ static inline int64_t imki_bag_time(uint64_t value)
 bool imki_bag_record_take(const uint8_t *at, size_t size, bool whole, imki_bag_record *record);
 /* Have the head of a record at hand; *found is false at the end. */
 imk_status imki_bag_head(imki_ros_log *log, imki_bag_record *record, bool *found, imk_error *error);
+/* As before; a damaged record is the end, where it is no matter to tell. */
+imk_status imki_bag_head_or_end(imki_ros_log *log, imki_bag_record *record, bool *there,
+                                imk_error *error);
 imk_status imki_bag_connection(imki_ros_log *log, const imki_bag_record *record, imk_error *error);
 
 /* log_bag_index.c: topics, numbers of messages and places of chunks, if the bag has an index; the

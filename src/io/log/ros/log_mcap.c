@@ -23,7 +23,7 @@ static imk_status back(imki_ros_log *log, imk_error *error)
 
 static imk_status open_mcap(imk_log_reader *reader, imk_error *error)
 {
-    static const imki_ros_container container = {next, back};
+    static const imki_ros_container container = {next, back, imki_mcap_shape};
     state *s = calloc(1, sizeof *s);
     reader->state = s;
     if (!s)

@@ -5,7 +5,12 @@
 
 #include "log_ros_internal.h"
 
-enum { IMKI_MCAP_MAGIC = 8, IMKI_MCAP_HEAD = 9, IMKI_MCAP_SCHEMAS_MAX = 10000 };
+enum {
+    IMKI_MCAP_MAGIC = 8,
+    IMKI_MCAP_HEAD = 9,
+    IMKI_MCAP_MESSAGE_MEMBERS = 22, /* channel, sequence, two times */
+    IMKI_MCAP_SCHEMAS_MAX = 10000
+};
 #define IMKI_MCAP_MAGIC_TEXT "\x89MCAP0\r\n"
 
 /* First bytes of records. */
@@ -18,7 +23,11 @@ enum {
     IMKI_MCAP_CHUNK = 6,
     IMKI_MCAP_MESSAGE_INDEX = 7,
     IMKI_MCAP_CHUNK_INDEX = 8,
+    IMKI_MCAP_ATTACHMENT = 9,
+    IMKI_MCAP_ATTACHMENT_INDEX = 10,
     IMKI_MCAP_STATISTICS = 11,
+    IMKI_MCAP_METADATA = 12,
+    IMKI_MCAP_METADATA_INDEX = 13,
     IMKI_MCAP_SUMMARY_OFFSET = 14,
     IMKI_MCAP_DATA_END = 15
 };
@@ -33,7 +42,9 @@ typedef struct imki_mcap {
     imki_ros_inside inside;
     imki_mcap_schema *schemas;
     size_t schema_count, schema_room;
-    imki_ros_places places;
+    /* CRC-32 of the file up to a place, as long as all of it was met and no chunk has its own. */
+    uint32_t sum;
+    uint64_t summed;
 } imki_mcap;
 
 typedef struct imki_mcap_record {
@@ -80,14 +91,18 @@ imk_status imki_mcap_next(imki_mcap *mcap, imki_ros_message *message, bool *foun
                           imk_error *error);
 void imki_mcap_stop(imki_mcap *mcap);
 
-/* Have the head of a record at hand: kind and size. *found is false at the end. */
-imk_status imki_mcap_head(imki_ros_log *log, imki_mcap_record *record, bool *found,
-                          imk_error *error);
 /* Have the record whose head is at hand. */
 imk_status imki_mcap_need(imki_ros_log *log, imki_mcap_record *record, bool *whole,
                           imk_error *error);
 /* Note a schema or a channel. */
 imk_status imki_mcap_define(imki_mcap *mcap, const imki_mcap_record *record, imk_error *error);
+
+/* ---- log_mcap_shape.c ------------------------------------------------------------------------ */
+
+/* As imki_ros_container.shape. */
+imki_ros_shape imki_mcap_shape(imki_ros_log *log, const uint8_t *at, size_t at_hand, bool strict);
+/* Do the members of a record of a kind that is not known look as those of a message or a chunk? */
+bool imki_mcap_holds_messages(imki_ros_log *log, const uint8_t *at, size_t at_hand);
 
 /* ---- log_mcap_summary.c ---------------------------------------------------------------------- */
 

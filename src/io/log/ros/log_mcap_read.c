@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <zlib.h>
 
 static const char remedy[] =
     "copy the file again, or save what is whole: mcap recover OLD.mcap -o NEW.mcap";
@@ -107,8 +108,9 @@ imk_status imki_mcap_define(imki_mcap *mcap, const imki_mcap_record *record, imk
 
 /* ---- records ---- */
 
-imk_status imki_mcap_head(imki_ros_log *log, imki_mcap_record *record, bool *found,
-                          imk_error *error)
+/* Have the head of a record at hand: kind and size. *found is false at the end. */
+static imk_status need_head(imki_ros_log *log, imki_mcap_record *record, bool *found,
+                            imk_error *error)
 {
     imki_log_text *text = log->text;
     imk_status status = imki_ros_need(log, IMKI_MCAP_HEAD, found, error);
@@ -116,8 +118,6 @@ imk_status imki_mcap_head(imki_ros_log *log, imki_mcap_record *record, bool *fou
         return status;
     const uint8_t *at = (const uint8_t *)text->next;
     *record = (imki_mcap_record){at[0], at + IMKI_MCAP_HEAD, imki_get_u64(at + 1)};
-    if (record->kind == 0)
-        return imki_ros_refuse_record(log, "the head of a record is damaged", remedy, error);
     if (record->size > UINT64_MAX - IMKI_MCAP_HEAD) {
         log->reader->cut_short = true;
         *found = false;
@@ -144,7 +144,7 @@ static int64_t time_of(uint64_t nanoseconds)
 /* @return false: the record is damaged */
 static bool give(const imki_mcap_record *record, imki_ros_message *message)
 {
-    enum { MEMBERS = 22, LOG_TIME = 6 }; /* channel, sequence, two times */
+    enum { MEMBERS = IMKI_MCAP_MESSAGE_MEMBERS, LOG_TIME = 6 };
     if (record->size < MEMBERS)
         return false;
     *message = (imki_ros_message){.channel = imki_get_u16(record->data),
@@ -152,6 +152,33 @@ static bool give(const imki_mcap_record *record, imki_ros_message *message)
                                   .data = record->data + MEMBERS,
                                   .size = (size_t)record->size - MEMBERS};
     return true;
+}
+
+/* The record at text->next. One that comes again, or behind what was not met, changes nothing. */
+static void sum_up(imki_mcap *mcap, size_t size)
+{
+    const imki_log_text *text = mcap->log->text;
+    if (imki_log_text_place(text) != mcap->summed || (size_t)(text->end - text->next) < size)
+        return;
+    mcap->sum = (uint32_t)crc32_z(mcap->sum, (const uint8_t *)text->next, size);
+    mcap->summed += size;
+}
+
+/* The end of the data section: the CRC-32 of all before it, or 0. */
+static imk_status end_data(imki_mcap *mcap, imk_error *error)
+{
+    enum { ALL = IMKI_MCAP_HEAD + 4 };
+    imki_ros_log *log = mcap->log;
+    bool whole;
+    const imk_status status = imki_ros_need(log, ALL, &whole, error);
+    if (status != IMK_OK || !whole || log->looking ||
+        imki_log_text_place(log->text) != mcap->summed)
+        return status;
+    mcap->summed = 0; /* once */
+    const uint32_t sum = imki_get_u32((const uint8_t *)log->text->next + IMKI_MCAP_HEAD);
+    if (sum != 0 && sum != mcap->sum)
+        imki_log_damage(log->reader, log->rows);
+    return IMK_OK;
 }
 
 /* Chunk: times of its first and last message, size and CRC-32 of the records in it, compression,
@@ -180,6 +207,8 @@ static imk_status enter_chunk(imki_mcap *mcap, imki_mcap_record *record, imk_err
         imki_ros_leave(log, inside, true);
         return IMK_OK;
     }
+    if (whole && sum == 0)
+        sum_up(mcap, all);
     return imki_ros_enter(log, inside, packing, members.at, size < left ? (size_t)size : left, due,
                           sum, error);
 }
@@ -205,12 +234,27 @@ static imk_status next_inside(imki_mcap *mcap, imki_ros_message *message, bool *
     return IMK_OK;
 }
 
+/* A record that holds no messages; one of a kind that is not known was perhaps of another. */
 static imk_status pass(imki_mcap *mcap, const imki_mcap_record *record, bool *over,
                        imk_error *error)
 {
-    bool whole;
-    const imk_status status =
-        imki_ros_skip(mcap->log, IMKI_MCAP_HEAD + record->size, &whole, error);
+    enum { AT_HAND_MAX = 1 << 20 };
+    imki_ros_log *log = mcap->log;
+    const uint64_t all = IMKI_MCAP_HEAD + record->size;
+    bool whole = true;
+    imk_status status = IMK_OK;
+    if (all <= AT_HAND_MAX)
+        status = imki_ros_need(log, all, &whole, error);
+    *over = !whole;
+    if (status != IMK_OK || !whole)
+        return status;
+    if (record->kind > IMKI_MCAP_DATA_END &&
+        imki_mcap_holds_messages(log, (const uint8_t *)log->text->next,
+                                 (size_t)(log->text->end - log->text->next)))
+        imki_log_damage(log->reader, log->rows);
+    if (all <= AT_HAND_MAX)
+        sum_up(mcap, (size_t)all);
+    status = imki_ros_skip(log, all, &whole, error);
     *over = !whole;
     return status;
 }
@@ -221,8 +265,11 @@ static imk_status next_outside(imki_mcap *mcap, imki_ros_message *message, bool 
 {
     imki_ros_log *log = mcap->log;
     imki_mcap_record record;
-    bool there, whole = false, enough = false;
-    imk_status status = imki_mcap_head(log, &record, &there, error);
+    bool there, sound, whole = false, enough = false;
+    imk_status status = imki_ros_go_on(log, &sound, over, error);
+    if (status != IMK_OK || !sound)
+        return status;
+    status = need_head(log, &record, &there, error);
     if (status == IMK_OK && there)
         imki_ros_mark(log, IMKI_MCAP_HEAD + record.size, &enough);
     *over = !there || enough;
@@ -232,7 +279,7 @@ static imk_status next_outside(imki_mcap *mcap, imki_ros_message *message, bool 
     case IMKI_MCAP_DATA_END:
     case IMKI_MCAP_FOOTER:
         *over = true;
-        return IMK_OK;
+        return record.kind == IMKI_MCAP_DATA_END ? end_data(mcap, error) : IMK_OK;
     case IMKI_MCAP_CHUNK:
         return enter_chunk(mcap, &record, error);
     case IMKI_MCAP_SCHEMA:
@@ -250,6 +297,7 @@ static imk_status next_outside(imki_mcap *mcap, imki_ros_message *message, bool 
         status = imki_mcap_define(mcap, &record, error);
     else if (!(*found = give(&record, message)))
         imki_log_damage(log->reader, log->rows);
+    sum_up(mcap, (size_t)(IMKI_MCAP_HEAD + record.size));
     log->text->next += IMKI_MCAP_HEAD + record.size;
     return status;
 }
@@ -274,8 +322,11 @@ imk_status imki_mcap_start(imki_mcap *mcap, imk_error *error)
         memcmp(text->next, IMKI_MCAP_MAGIC_TEXT, IMKI_MCAP_MAGIC) != 0)
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "the file does not begin as MCAP",
                              "copy the file again");
-    text->next += IMKI_MCAP_MAGIC;
     mcap->inside.at = NULL;
+    mcap->log->places.count = 0;
+    mcap->sum = (uint32_t)crc32_z(0, (const uint8_t *)text->next, IMKI_MCAP_MAGIC);
+    mcap->summed = IMKI_MCAP_MAGIC;
+    text->next += IMKI_MCAP_MAGIC;
     mcap->log->looked = IMKI_MCAP_MAGIC;
     return IMK_OK;
 }
@@ -284,5 +335,4 @@ void imki_mcap_stop(imki_mcap *mcap)
 {
     imki_ros_chunk_free(&mcap->inside.unpacked);
     free(mcap->schemas);
-    free(mcap->places.place);
 }

@@ -76,7 +76,7 @@ static bool take_chunk(imki_mcap *mcap, const imki_mcap_record *record, bool *me
             return false;
         imki_ros_topic_times(mcap->log, channel, (int64_t)begin, (int64_t)end);
     }
-    *memory = *memory && imki_ros_place_add(&mcap->places, place);
+    *memory = *memory && imki_ros_place_add(&mcap->log->places, place);
     return true;
 }
 
@@ -149,13 +149,13 @@ imk_status imki_mcap_summary_read(imki_mcap *mcap, bool *intact, imk_error *erro
     imki_ros_log *log = mcap->log;
     summary s = {.intact = true, .memory = true};
     uint32_t due = 0;
-    mcap->places.count = 0;
+    mcap->log->places.count = 0;
     imk_status status = find_summary(mcap, &s.begin, &s.end, &due, error);
     if (status == IMK_OK && s.begin > 0)
         status = look_twice(mcap, &s, due, error);
     *intact = s.begin > 0 && s.intact && s.counted;
     if (!s.intact)
-        mcap->places.count = 0;
+        mcap->log->places.count = 0;
     log->reader->cut_short = false;
     log->reader->damaged = log->reader->first_damaged = 0;
     return status == IMK_OK ? imki_log_text_seek(log->text, IMKI_MCAP_MAGIC, error) : status;
@@ -194,7 +194,7 @@ imk_status imki_mcap_go(imki_mcap *mcap, double fraction, imk_error *error)
     const uint64_t target = (uint64_t)(fraction * (double)imki_ros_size(log));
     uint64_t place;
     imk_status status = IMK_OK;
-    if (!imki_ros_place_find(&mcap->places, target, &place))
+    if (!imki_ros_place_find(&mcap->log->places, target, &place))
         status = walk(mcap, target, &place, error);
     mcap->inside.at = NULL;
     log->moved = true;

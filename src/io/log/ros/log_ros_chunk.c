@@ -166,6 +166,17 @@ void imki_ros_leave(imki_ros_log *log, imki_ros_inside *inside, bool damaged)
     inside->at = NULL;
 }
 
+/* Leave a chunk out that cannot be unpacked, be it so or by damage. If nothing else is wrong with a
+ * log without rows, this is why. */
+static imk_status leave_out(imki_ros_log *log, imki_ros_inside *inside, const char *reason)
+{
+    if (!log->unread[0])
+        snprintf(log->unread, sizeof log->unread, "%s", reason);
+    log->unread_chunks++;
+    imki_ros_leave(log, inside, true);
+    return IMK_OK;
+}
+
 imk_status imki_ros_enter(imki_ros_log *log, imki_ros_inside *inside, imki_log_piece packing,
                           const uint8_t *bytes, size_t size, uint64_t due, uint32_t sum,
                           imk_error *error)
@@ -177,17 +188,15 @@ imk_status imki_ros_enter(imki_ros_log *log, imki_ros_inside *inside, imki_log_p
         snprintf(found, sizeof found, "the messages are compressed by \"%.*s\"",
                  (int)(packing.end - packing.begin < 32 ? packing.end - packing.begin : 32),
                  packing.begin);
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", found,
-                             "no compression, bz2, lz4 or zstd");
+        return leave_out(log, inside, found);
     }
     inside->at = bytes;
     inside->end = bytes + size;
     if (kind != IMKI_ROS_PLAIN) {
+        if (due > IMKI_ROS_RECORD_MAX)
+            return leave_out(log, inside, "a chunk is larger than 1 GiB");
         const imk_status status =
-            due > IMKI_ROS_RECORD_MAX
-                ? imk_error_set(error, IMK_ERROR_RANGE, "", "a chunk is larger than 1 GiB",
-                                "a log of smaller chunks")
-                : imki_ros_unpack(&inside->unpacked, kind, bytes, size, due, &intact, error);
+            imki_ros_unpack(&inside->unpacked, kind, bytes, size, due, &intact, error);
         if (status != IMK_OK)
             return status;
         inside->at = inside->unpacked.bytes;

@@ -77,36 +77,49 @@ static void read_values(const uint8_t *at, bool big, imki_imu *imu)
     }
 }
 
-static bool read_ros1(const uint8_t *data, size_t size, imki_imu *imu)
+static bool fits_ros1(const uint8_t *data, size_t size)
 {
     enum { FIXED = 16 + 8 * DOUBLES };
-    if (size < FIXED || imki_get_u32(data + 12) != size - FIXED)
+    return size >= FIXED && imki_get_u32(data + 12) == size - FIXED;
+}
+
+static bool read_ros1(const uint8_t *data, size_t size, imki_imu *imu)
+{
+    if (!fits_ros1(data, size))
         return false;
     imu->stamp = (int64_t)imki_get_u32(data + 4) * BILLION + imki_get_u32(data + 8);
     imu->frame = data + 16;
-    imu->frame_size = size - FIXED;
+    imu->frame_size = imki_get_u32(data + 12);
     read_values(data + size - 8 * DOUBLES, false, imu);
     return true;
 }
 
-static bool read_cdr(const uint8_t *data, size_t size, imki_imu *imu)
+/* Bytes from the beginning to the doubles; 0: it is no Imu. */
+static size_t cdr_doubles(const uint8_t *data, size_t size)
 {
     if (size < CDR_HEAD + 12 || data[0] != 0 || data[1] > CDR_LITTLE)
+        return 0;
+    const size_t left = size - CDR_HEAD - 12;
+    const size_t text = (data[1] == CDR_BIG ? turned_u32 : imki_get_u32)(data + CDR_HEAD + 8);
+    if (text > left)
+        return 0;
+    const size_t begin = CDR_HEAD + ((12 + text + 7) & ~(size_t)7);
+    return size < begin || size - begin < 8 * DOUBLES ? 0 : begin;
+}
+
+static bool read_cdr(const uint8_t *data, size_t size, imki_imu *imu)
+{
+    const size_t begin = cdr_doubles(data, size);
+    if (begin == 0)
         return false;
     const bool big = data[1] == CDR_BIG;
     uint32_t (*const get)(const uint8_t *) = big ? turned_u32 : imki_get_u32;
-    const uint8_t *fields = data + CDR_HEAD;
-    const size_t left = size - CDR_HEAD - 12, text = get(fields + 8);
-    if (text > left)
-        return false;
-    const size_t begin = (12 + text + 7) & ~(size_t)7;
-    if (size - CDR_HEAD < begin || size - CDR_HEAD - begin < 8 * DOUBLES)
-        return false;
     /* The seconds have a sign. */
-    imu->stamp = (int64_t)(int32_t)get(fields) * BILLION + get(fields + 4);
-    imu->frame = fields + 12;
+    imu->stamp = (int64_t)(int32_t)get(data + CDR_HEAD) * BILLION + get(data + CDR_HEAD + 4);
+    const size_t text = get(data + CDR_HEAD + 8);
+    imu->frame = data + CDR_HEAD + 12;
     imu->frame_size = text > 0 ? text - 1 : 0;
-    read_values(fields + begin, big, imu);
+    read_values(data + begin, big, imu);
     return true;
 }
 
@@ -115,6 +128,14 @@ int imki_ros_imu_representation(const uint8_t *data, size_t size)
     enum { LARGEST = 0x1F }; /* of those that are given away */
     return size >= CDR_HEAD && data[0] == 0 && data[1] > CDR_LITTLE && data[1] <= LARGEST ? data[1]
                                                                                           : 0;
+}
+
+bool imki_ros_imu_fits(imki_ros_encoding encoding, const uint8_t *data, size_t size)
+{
+    if (encoding == IMKI_ROS_1)
+        return fits_ros1(data, size);
+    const size_t begin = encoding == IMKI_ROS_CDR ? cdr_doubles(data, size) : 0;
+    return begin > 0 && size - begin == 8 * DOUBLES;
 }
 
 bool imki_ros_imu_read(imki_ros_encoding encoding, const uint8_t *data, size_t size, imki_imu *imu)

@@ -25,6 +25,8 @@ typedef struct imki_imu {
 
 /* Read a message. @return whether it is one, as a whole */
 bool imki_ros_imu_read(imki_ros_encoding encoding, const uint8_t *data, size_t size, imki_imu *imu);
+/* Is it as long as the texts in it say? */
+bool imki_ros_imu_fits(imki_ros_encoding encoding, const uint8_t *data, size_t size);
 
 /* The number of the kind of CDR that a message is in, if it is one that is not read; else 0. */
 int imki_ros_imu_representation(const uint8_t *data, size_t size);

@@ -45,12 +45,32 @@ typedef struct imki_ros_channel {
 
 typedef struct imki_ros_log imki_ros_log;
 
+/* Bytes taken as a record. */
+typedef struct imki_ros_shape {
+    size_t due;      /* bytes needed to tell; if not more than were at hand, the rest is told: */
+    uint64_t size;   /* of the record with its head */
+    unsigned weight; /* 0: it is none; 3: nothing but a record looks so */
+    bool proven;     /* its members agree with its size */
+    bool cut;        /* the log ends before it can be told */
+} imki_ros_shape;
+
+/* Places of the records of a file at which imk_log_seek() can begin, and reading behind damage. */
+typedef struct imki_ros_places {
+    uint64_t *place;
+    size_t count, room;
+    bool sorted;
+} imki_ros_places;
+
 /* The functions of a container. */
 typedef struct imki_ros_container {
     /* The next message; *found is false at the end. Damage is told by imki_log_damage(). */
     imk_status (*next)(imki_ros_log *log, imki_ros_message *message, bool *found, imk_error *error);
     /* Go back to where `looked` is, or to the first message; see imki_ros_log.looking. */
     imk_status (*back)(imki_ros_log *log, imk_error *error);
+    /* What bytes are as a record; of containers of bytes.
+     * @param at_hand  at least 9
+     * @param strict   at a place that nothing led to: only what this log surely has */
+    imki_ros_shape (*shape)(imki_ros_log *log, const uint8_t *at, size_t at_hand, bool strict);
 } imki_ros_container;
 
 /* The beginning of the state of each of these formats. */
@@ -64,7 +84,8 @@ struct imki_ros_log {
     size_t topic_count, topic_room;
     imki_ros_channel *channels; /* by id */
     size_t channel_count, channel_room;
-    imki_ros_channel last; /* looked up, if last_known */
+    imki_ros_places places; /* of chunks, by the index */
+    imki_ros_channel last;  /* looked up, if last_known */
     bool last_known;
     size_t topic; /* the one that is read */
     bool indexed; /* all topics are known */
@@ -78,8 +99,10 @@ struct imki_ros_log {
     size_t damaged_before; /* there */
     size_t damaged_met;    /* in the look */
     bool cut_met;
-    bool by_receipt; /* the first stamps are 0: the times are those of recording */
-    int64_t origin;  /* [ns] */
+    size_t unread_chunks; /* that cannot be unpacked */
+    char unread[96];      /* why the first one of them */
+    bool by_receipt;      /* the first stamps are 0: the times are those of recording */
+    int64_t origin;       /* [ns] */
     bool frame_known;
     uint8_t frame[IMKI_ROS_FRAME]; /* of the first message that is read */
     size_t frame_size;
@@ -215,15 +238,22 @@ imk_status imki_ros_enter(imki_ros_log *log, imki_ros_inside *inside, imki_log_p
 /* All is read, or what is left makes no sense. */
 void imki_ros_leave(imki_ros_log *log, imki_ros_inside *inside, bool damaged);
 
-/* Places of the records of a file at which imk_log_seek() can begin. */
-typedef struct imki_ros_places {
-    uint64_t *place;
-    size_t count, room;
-} imki_ros_places;
-
 bool imki_ros_place_add(imki_ros_places *places, uint64_t place);
 /* The last one that is not behind this fraction of the file; the first, if all are. In any order.
  * @return false: there is none */
 bool imki_ros_place_find(const imki_ros_places *places, uint64_t target, uint64_t *place);
+/* The first one behind `here`. @return false: there is none */
+bool imki_ros_place_next(imki_ros_places *places, uint64_t here, uint64_t *place);
+
+/* ---- log_ros_search.c ------------------------------------------------------------------------ */
+
+/* The shape of a message with a head of `head` bytes before its `size` bytes. */
+imki_ros_shape imki_ros_message_shape(imki_ros_log *log, uint32_t channel, const uint8_t *at,
+                                      size_t at_hand, size_t head, uint64_t size, bool strict);
+/* Is the record at text->next to be believed? If not, this is told as damage, and the text goes to
+ * the next place at which records begin.
+ * @param sound  the text stays where it is; also at the end of the log
+ * @param over   there is no such place, or it is not looked for any farther */
+imk_status imki_ros_go_on(imki_ros_log *log, bool *sound, bool *over, imk_error *error);
 
 #endif

@@ -114,7 +114,32 @@ bool imki_ros_place_add(imki_ros_places *places, uint64_t place)
         places->room = room;
     }
     places->place[places->count++] = place;
+    places->sorted = false;
     return true;
+}
+
+static int by_place(const void *a, const void *b)
+{
+    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+bool imki_ros_place_next(imki_ros_places *places, uint64_t here, uint64_t *place)
+{
+    size_t begin = 0, end = places->count;
+    if (!places->sorted && end > 0)
+        qsort(places->place, end, sizeof *places->place, by_place);
+    places->sorted = true;
+    while (begin < end) {
+        const size_t middle = (begin + end) / 2;
+        if (places->place[middle] <= here)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    if (begin < places->count)
+        *place = places->place[begin];
+    return begin < places->count;
 }
 
 bool imki_ros_place_find(const imki_ros_places *places, uint64_t target, uint64_t *place)

@@ -83,6 +83,7 @@ static imk_status look(imki_ros_log *log, imk_error *error)
 {
     imki_ros_message message;
     imk_status status = IMK_OK;
+    log->looking = true;
     for (bool found = true; status == IMK_OK && found;) {
         status = log->container->next(log, &message, &found, error);
         imki_ros_topic *topic =
@@ -109,6 +110,18 @@ static bool is_called_imu(const char *type)
            (length == 3 || strchr("/.:", type[length - 4]));
 }
 
+/* Is all that is damaged chunks that cannot be unpacked? */
+static bool is_unread(const imki_ros_log *log)
+{
+    return log->unread_chunks > 0 && log->unread_chunks >= log->damaged_met;
+}
+
+static imk_status refuse_unread(const imki_ros_log *log, imk_error *error)
+{
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", log->unread,
+                         "chunks below 1 GiB without compression, or with bz2, lz4 or zstd");
+}
+
 /* Why there is none: what is damaged, or an encoding that is not read; else as it was said. */
 static imk_status refuse_empty(const imki_ros_log *log, imk_error *error)
 {
@@ -127,6 +140,8 @@ static imk_status refuse_empty(const imki_ros_log *log, imk_error *error)
         return imk_error_set(error, IMK_ERROR_EMPTY, "", found,
                              "write sensor_msgs/Imu in ros1, or sensor_msgs/msg/Imu in cdr");
     }
+    if (is_unread(log))
+        return refuse_unread(log, error);
     if (damaged == 0 && !log->cut_met)
         return IMK_ERROR_EMPTY;
     if (damaged == 0)
@@ -214,18 +229,36 @@ imki_ros_log *imki_ros_log_of(imk_log_reader *reader)
     return log;
 }
 
+/* The index is damaged: other topics stand in the log. */
+static imk_status look_again(imki_ros_log *log, uint64_t begin, imk_error *error)
+{
+    log->indexed = log->counted = false;
+    imki_ros_topic_uncount(log);
+    log->reader->stream_count = 0;
+    log->looked = begin;
+    log->damaged_before = 0;
+    const imk_status status = log->container->back(log, error);
+    return status == IMK_OK ? look(log, error) : status;
+}
+
 imk_status imki_ros_open(imki_ros_log *log, imk_error *error)
 {
     imk_status status = IMK_OK;
     if (log->packed)
         status = prepare(log, error);
-    log->looking = true;
     if (status == IMK_OK && log->indexed)
         status = choose(log, error);
+    const size_t known = log->topic_count;
+    const uint64_t begin = log->looked;
     if (status == IMK_OK)
         status = look(log, error);
+    if (status == IMK_OK && log->indexed && log->topics[log->topic].seen == 0 &&
+        log->topic_count > known)
+        status = look_again(log, begin, error);
     if (status == IMK_OK && !log->indexed)
         status = choose(log, error);
+    if (status == IMK_OK && log->topics[log->topic].seen == 0 && is_unread(log))
+        status = refuse_unread(log, error);
     if (status == IMK_OK)
         status = make_layout(log, error);
     return status == IMK_OK ? find_times(log, error) : status;
@@ -325,6 +358,7 @@ void imki_ros_close(imki_ros_log *log)
 {
     free(log->topics);
     free(log->channels);
+    free(log->places.place);
     free(log->unpacked);
     ZSTD_freeDCtx(log->unpacker);
 }

@@ -130,7 +130,7 @@ static imk_status open_database(imki_rosbag2 *bag, imk_error *error)
 
 static imk_status open_rosbag2(imk_log_reader *reader, imk_error *error)
 {
-    static const imki_ros_container container = {next, back};
+    static const imki_ros_container container = {next, back, imki_mcap_shape};
     imki_rosbag2 *bag = calloc(1, sizeof *bag);
     reader->state = bag;
     if (!bag)
