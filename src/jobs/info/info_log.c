@@ -139,6 +139,7 @@ static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool
 {
     const uint64_t begin = progress_of(l);
     const size_t before = l->info->rows_read;
+    const uint64_t from = begin > l->reached ? begin : l->reached;
     bool known = begin < l->reached;
     imk_status status = IMK_OK;
     imki_info_rows_begin(&l->rows);
@@ -166,7 +167,7 @@ static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool
             break;
     }
     const uint64_t end = progress_of(l);
-    l->covered += end > begin ? (double)(end - begin) : 0;
+    l->covered += end > from ? (double)(end - from) : 0;
     l->info->places += l->info->rows_read > before;
     return status;
 }
@@ -259,6 +260,10 @@ static void estimate_rows(look *l)
                           : !timed    ? info->rows_from
                           : l->ended  ? IMK_INFO_ENDS
                                       : IMK_INFO_BEGINNING;
+    if (info->uneven_stamps && info->interval > 0 && info->rows_from != IMK_INFO_BEGINNING) {
+        info->duration = (double)(info->rows - 1 + info->missing) * info->interval;
+        info->duration_from = info->rows_from;
+    }
     if (timed && info->duration_from == IMK_INFO_BEGINNING &&
         info->rows_from != IMK_INFO_BEGINNING) {
         info->duration = (double)(info->rows - 1) * l->interval;

@@ -31,8 +31,12 @@ void imki_info_stamps_settle(imki_info_stamps *s, imk_info_log *info, const imk_
 {
     imk_log_findings settled = *found;
     imk_error error;
-    if (s->failed || s->stamps.rows < 2 || !imki_stamps_uneven(0, found))
+    if (s->failed || s->stamps.rows < 2)
         return;
+    if (!imki_stamps_uneven(0, found)) {
+        imki_tell_steps(found, &info->findings);
+        return;
+    }
     imki_record_times *times = imki_resize(&info->allocator, NULL, sizeof *times);
     if (!times)
         return;
