@@ -103,8 +103,8 @@ static const struct message {
                   "that are not recorded are missing, and rates and forces are too low by up to a "
                   "factor of {2.3g}; record every message"},
     {"uneven_increments", "each increment is divided by its own step of the time, and the steps "
-                          "scatter by {0.2g} %: if the samples are even and only the times are "
-                          "coarse or late, state --rate"},
+                          "are not even: if the samples are, and only the times are coarse or "
+                          "late, state --rate"},
     {"absent", "{0} of the {1} messages that the log says it has of this sensor are not in it, "
                "or in files that are missing; copy it again, with all of its files"},
     {"unclosed", "the database is in the mode of a write-ahead log, and does not say how many "

@@ -331,31 +331,6 @@ void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint64_t *si
         imki_log_text_progress(&reader->text, done, size);
 }
 
-/* Intervals that the increments of these rows are divided by: steps of the time, but behind lost
- * rows. An increment is what the device summed up from one sample to the next, whether that was
- * recorded or not. Rows are lost where a step is longer than those before, which were even, by half
- * of them; a step that stays is a new rate. */
-static void find_intervals(imk_log_reader *reader, size_t rows, const double *time)
-{
-    enum { EVEN_MOST = 16, EVEN_LEAST = 8, OF_A_LOSS = 3 };
-    for (size_t i = 0; i < rows; i++) {
-        const double step = time[i] - reader->last_time, usual = reader->usual_step;
-        const bool is_step = step > 0.0 && isfinite(step);
-        const bool lost = is_step && step > 1.5 * usual && reader->even_steps >= EVEN_LEAST;
-        reader->interval[i] = is_step && !lost ? step : usual;
-        if (lost) {
-            reader->even_steps -= OF_A_LOSS;
-        } else if (is_step) {
-            const bool even = step > 0.6 * usual && step < 1.5 * usual;
-            reader->even_steps = !even                            ? 0
-                                 : reader->even_steps < EVEN_MOST ? reader->even_steps + 1
-                                                                  : EVEN_MOST;
-            reader->usual_step = even ? usual + (step - usual) / EVEN_LEAST : step;
-        }
-        reader->last_time = time[i];
-    }
-}
-
 /* What needs more than a row: times, findings, increments; and the offsets of units. */
 static void finish_block(imk_log_reader *reader, size_t rows, double *time, double *const *columns)
 {
@@ -366,7 +341,7 @@ static void finish_block(imk_log_reader *reader, size_t rows, double *time, doub
             time[i] = (time[i] - origin) * scale;
         imki_record_times_add(&reader->times, reader->part.before + reader->rows + 1, rows, time);
         if (layout->has_increments && reader->rate == 0.0)
-            find_intervals(reader, rows, time);
+            imki_log_intervals(reader, rows, time);
     }
     for (size_t j = 0; j < layout->column_count; j++) {
         double *value = columns[j];

@@ -130,6 +130,13 @@ typedef struct imki_log_pace {
     double first, last, least, most; /* [s] */
 } imki_log_pace;
 
+/* Steps of the time, by which increments are divided. */
+typedef struct imki_log_steps {
+    double usual, last; /* [s] */
+    unsigned even;      /* steps like the usual one, in a row */
+    unsigned alike;     /* steps like the last one, in a row */
+} imki_log_steps;
+
 struct imk_log_reader {
     imki_log_text text;
     imki_log_layout_read layout;
@@ -160,9 +167,8 @@ struct imk_log_reader {
     double rate;               /* [Hz]; 0: from the times */
     double time_origin;        /* in the unit of the file */
     double last_time;          /* [s] */
-    double usual_step;         /* [s], of the times so far, for increments */
-    unsigned even_steps;
-    double device_interval; /* [s], of the device that the log names; 0: not known */
+    imki_log_steps steps;      /* of the times so far, for increments */
+    double device_interval;    /* [s], of the device that the log names; 0: not known */
     size_t rows, not_finite, first_not_finite;
     imki_log_label *labels;
     size_t label_count;
@@ -235,5 +241,8 @@ imk_status imki_log_rewind(imk_log_reader *reader, imk_error *error);
  * @return IMK_ERROR_EMPTY, IMK_ERROR_TOO_SHORT (increments without a step) */
 imk_status imki_log_first_rows(imk_log_reader *reader, uint64_t rows, const double time[2],
                                const char *none, const char *due, imk_error *error);
+
+/* Fill reader->interval for rows of these times, which follow those before. */
+void imki_log_intervals(imk_log_reader *reader, size_t rows, const double *time);
 
 #endif

@@ -193,7 +193,7 @@ imk_status imki_log_first_rows(imk_log_reader *reader, uint64_t rows, const doub
         const double scale = layout->factor[layout->time_column];
         if (fabs(time[0]) * scale > 1e6)
             reader->time_origin = time[0];
-        reader->usual_step = (time[1] - time[0]) * scale;
+        reader->steps.usual = (time[1] - time[0]) * scale;
     }
     return IMK_OK;
 }

@@ -91,9 +91,8 @@ void imki_tell_manner(const imk_record_source *source, imk_findings *findings)
     for (size_t c = 0; c < source->column_count; c++)
         increments = increments || source->columns[c].increment;
     const double scatter = f.interval > 0 ? f.jitter / f.interval : 0, told = 0.02;
-    if (increments && source->rate == 0 && scatter > told)
-        imki_find(findings, IMK_FINDING_WARNING, "uneven_increments", NULL,
-                  IMKI_NUMBERS(100 * scatter));
+    if (increments && source->rate == 0 && (scatter > told || 50 * f.repeats > f.rows))
+        imki_find(findings, IMK_FINDING_WARNING, "uneven_increments", NULL, 0, NULL);
     if (f.received)
         imki_find(findings, IMK_FINDING_WARNING, "received", NULL, IMKI_NUMBERS((double)f.stamps));
     for (int i = 0; i < 3; i++)
@@ -108,7 +107,7 @@ void imki_tell_manner(const imk_record_source *source, imk_findings *findings)
         imki_find(findings, IMK_FINDING_WARNING, "absent", NULL,
                   IMKI_NUMBERS((double)f.absent, (double)f.stated));
     if (f.unclosed)
-        imki_find(findings, IMK_FINDING_WARNING, "unclosed", NULL, 0, NULL);
+        imki_find(findings, IMK_FINDING_NOTE, "unclosed", NULL, 0, NULL);
     if (f.unlisted > 0)
         imki_find(findings, IMK_FINDING_WARNING, "unlisted", f.unlisted_name,
                   IMKI_NUMBERS((double)f.unlisted));
