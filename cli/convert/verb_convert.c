@@ -207,6 +207,11 @@ static int convert_log(convert_options *o, const char *in, const char *out)
     const imk_status status =
         imk_convert_log_run(&source, &o->to, &sink, &t.job, &findings, &error);
     threaded_job_end(&t);
+    const imk_log_findings done = imk_log_findings_get(reader);
+    if (status == IMK_OK && done.not_finite > 0)
+        command_note("%zu of %zu rows have a value that is missing or no finite number: it is "
+                     "written as it is",
+                     done.not_finite, done.rows);
     const imk_status ended = imk_log_sink_end(&written, status, &error);
     code = status == IMK_OK && ended != IMK_OK ? command_error(&error, NULL)
                                                : tell(in, &findings, ended, &error);

@@ -82,6 +82,7 @@ typedef struct imk_info_log {
      *  of 0 and below 0, rows with a value that is no finite number, rows that cannot be read. */
     size_t gaps, missing, repeats, reversals, not_finite, damaged;
     bool cut_short; /**< the record ends within a row or message */
+    bool stopped;   /**< an error ended the reading; the figures are of what was read before */
     /** Messages among them whose frame is not that of the first, and the frames; see
      *  imk_log_findings. */
     size_t other_frames;

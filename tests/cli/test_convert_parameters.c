@@ -209,6 +209,12 @@ static void test_epoch(void **state)
         assert_int_equal(run(line), 0);
         assert_string_equal(err, "");
     }
+    /* Beyond the whole numbers of a double, and short of those of today. */
+    assert_int_equal(
+        run("sed 's/^1403636579/9007199/' data.csv >small.csv && grep -c '^9007199' "
+            "small.csv && $I convert small.csv b.csv --to euroc && cmp small.csv b.csv "
+            "&& rm small.csv"),
+        0);
     assert_int_equal(run("$I convert data.csv c.csv"), 0);
     check_contains(err, "the times count from 1403636579.759 s, which is 0 in what is written",
                    "note");

@@ -113,6 +113,16 @@ static void in_poses(size_t row, double *v)
         v[1] += 1;
 }
 
+/* A tilt of 0.2 deg/s, slower than what a bias is. */
+static void tilting(size_t row, double *v)
+{
+    const double angle = 0.2 * 3.14159265358979 / 180 * 0.01 * (double)row;
+    at_rest(row, v);
+    v[1] += 0.2 * 3.14159265358979 / 180;
+    v[5] += 9.8 * sin(angle);
+    v[6] += 9.8 - 9.8 * cos(angle);
+}
+
 /* The turns of a vehicle: 0.1 rad/s in half a minute. */
 static void moving(size_t row, double *v)
 {
@@ -232,6 +242,7 @@ static void test_motion(void **state)
     assert_int_equal(info->motion, IMK_INFO_MOVES);
     imk_info_log_free(info);
     check_motion(turning, IMK_INFO_MOVES);
+    check_motion(tilting, IMK_INFO_MOVES);
     check_motion(noisy, IMK_INFO_REST);
     check_motion(weightless, IMK_INFO_REST);
     /* Without gyros and accelerometers nothing is said. */

@@ -159,6 +159,10 @@ int64_t imki_log_nanoseconds(int64_t ticks, int64_t per_second)
     const int64_t each = per_second > 0 && BILLION % per_second == 0 ? BILLION / per_second : 0;
     if (each > 0 && ticks < INT64_MAX / each && ticks > INT64_MIN / each)
         return ticks * each;
+    if (per_second > BILLION && per_second % BILLION == 0) {
+        const int64_t parts = per_second / BILLION, rest = ticks % parts;
+        return ticks / parts + (2 * rest >= parts) - (2 * rest <= -parts);
+    }
     const double nanoseconds = (double)ticks / (double)per_second * BILLION;
     return fabs(nanoseconds) < 9.2e18 ? llround(nanoseconds) : 0;
 }

@@ -49,6 +49,7 @@ typedef struct look {
     double covered;   /* by the places, in it */
     bool over;        /* the end was met */
     bool ended;       /* rows at the end were read, behind others */
+    bool overlaps;    /* the place at present begins with rows of another */
     /* Sums over the places. */
     double jitter_squares, steps, interval;
     imki_info_stamps stamps;
@@ -141,6 +142,7 @@ static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool
     const size_t before = l->info->rows_read;
     const uint64_t from = begin > l->reached ? begin : l->reached;
     bool known = begin < l->reached;
+    l->overlaps = false;
     imk_status status = IMK_OK;
     imki_info_rows_begin(&l->rows);
     for (size_t rows = 0, got = 1; rows < rows_most && !l->over; rows += got) {
@@ -152,6 +154,7 @@ static imk_status read_place(look *l, size_t rows_most, uint64_t size_most, bool
             find_window(l);
         const size_t left = known ? drop_known(l, got) : got;
         known = known && left == 0;
+        l->overlaps = l->overlaps || left < got;
         if (l->time >= 0 && left > 0) {
             if (l->info->rows_read == 0)
                 l->info->first_time = l->column[l->time][0];
@@ -181,14 +184,16 @@ static void take_findings(look *l, size_t rows_before)
     const imk_log_findings f = l->source->findings(l->source->context);
     const double steps = (double)(info->rows_read - rows_before);
     info->time_origin = f.time_origin;
-    if (!l->stamps.settled) {
+    if (!l->stamps.settled && !l->overlaps) {
         info->gaps += f.gaps;
         info->missing += f.missing;
     }
-    info->repeats += f.repeats;
-    info->reversals += f.reversals;
-    info->not_finite += f.not_finite;
-    info->damaged += f.damaged;
+    if (!l->overlaps) { /* what stands in both is counted already */
+        info->repeats += f.repeats;
+        info->reversals += f.reversals;
+        info->not_finite += f.not_finite;
+        info->damaged += f.damaged;
+    }
     info->cut_short = f.cut_short;
     info->other_frames += f.other_frames;
     memcpy(info->frames, f.frames, sizeof info->frames);
@@ -293,6 +298,7 @@ static imk_status run(look *l, imk_error *error)
     info->interval = l->stamps.settled ? l->stamps.interval : l->interval;
     info->jitter = l->steps > 0 ? sqrt(l->jitter_squares / l->steps) : 0;
     estimate_rows(l);
+    info->stopped = status != IMK_OK;
     imki_tell_manner(l->source, &info->findings);
     imki_tell_unused(l->source->column_count, l->source->columns, IMK_KINDS, &info->findings);
     imki_info_rows_end(&l->rows, l->scratch);

@@ -90,6 +90,21 @@ static size_t count_attitudes(const imki_info_rows *r, const double *rests)
     return count;
 }
 
+/* A stretch of rest whose attitude turns by more than a bias can is a slow motion. */
+static void find_slow_turns(const imki_info_rows *r, double *rests)
+{
+    const double most = 0.985; /* cosine of 10 deg */
+    for (size_t k = 0, end; k < r->window_count; k = end) {
+        double first[3], last[3];
+        bool turns = false;
+        for (end = k + 1; end < r->window_count && rests[end] > 0 && rests[k] > 0; end++)
+            turns = turns || (direction(r, k, first) && direction(r, end, last) &&
+                              first[0] * last[0] + first[1] * last[1] + first[2] * last[2] < most);
+        for (size_t i = k; i < end && turns; i++)
+            rests[i] = 0;
+    }
+}
+
 void imki_info_motion(imki_info_rows *r, double *rests, double *sorted)
 {
     imk_info_log *info = r->info;
@@ -108,8 +123,10 @@ void imki_info_motion(imki_info_rows *r, double *rests, double *sorted)
         for (int a = 0; a < IMKI_INFO_AXES; a++)
             if (r->axis[a] >= 0 && !axis_rests(r, k, a, quiet[a]))
                 rests[k] = 0;
-        sum += rests[k];
     }
+    find_slow_turns(r, rests);
+    for (size_t k = 0; k < r->window_count; k++)
+        sum += rests[k];
     info->resting = sum / (double)r->window_count;
     info->attitudes = count_attitudes(r, rests);
     for (size_t k = 1; k < r->window_count; k++)

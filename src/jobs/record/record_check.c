@@ -2,6 +2,7 @@
 /* Sources, sinks, models and settings that are none are refused before they are used. */
 #include "record_check_internal.h"
 
+#include "record_stamps_internal.h"
 #include "record_times_internal.h"
 
 #include "base/refuse_internal.h"
@@ -91,7 +92,7 @@ void imki_tell_manner(const imk_record_source *source, imk_findings *findings)
     for (size_t c = 0; c < source->column_count; c++)
         increments = increments || source->columns[c].increment;
     const double scatter = f.interval > 0 ? f.jitter / f.interval : 0, told = 0.02;
-    if (increments && source->rate == 0 && (scatter > told || 50 * f.repeats > f.rows))
+    if (increments && source->rate == 0 && (scatter > told || imki_stamps_uneven(0, &f)))
         imki_find(findings, IMK_FINDING_WARNING, "uneven_increments", NULL, 0, NULL);
     if (f.received)
         imki_find(findings, IMK_FINDING_WARNING, "received", NULL, IMKI_NUMBERS((double)f.stamps));

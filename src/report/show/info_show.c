@@ -95,6 +95,8 @@ static void show_faults(const imk_info_log *info, imk_table *table)
               "messages of another frame than the first");
     if (info->other_frames > 0)
         imki_text_add(&faults, " (%s): two sensors on one topic?", info->frames);
+    if (info->stopped)
+        imki_text_add(&faults, "%sreading ended with an error", faults.size > 0 ? "; " : "");
     if (info->cut_short)
         imki_text_add(&faults, "%sthe file ends in the middle of a row, message or block",
                       faults.size > 0 ? "; " : "");
@@ -186,7 +188,8 @@ static void time_data(const imk_info_log *info, imk_result *result)
     imk_result_text(result, "rows_from", basis_keys[info->rows_from]);
     imk_result_count(result, "rows_read", (long long)info->rows_read);
     imk_result_flag(result, "whole", info->whole);
-    imk_result_quantity(result, "duration", seconds * info->duration, "s");
+    imk_result_quantity(result, "duration",
+                        info->duration < 0 ? (double)NAN : seconds * info->duration, "s");
     imk_result_text(result, "duration_from", basis_keys[info->duration_from]);
     imk_result_quantity(result, "first_time", seconds * info->first_time, "s");
     imk_result_quantity(result, "last_time", seconds * info->last_time, "s");
@@ -202,6 +205,7 @@ static void time_data(const imk_info_log *info, imk_result *result)
     imk_result_count(result, "not_finite", (long long)info->not_finite);
     imk_result_count(result, "damaged", (long long)info->damaged);
     imk_result_flag(result, "cut_short", info->cut_short);
+    imk_result_flag(result, "stopped", info->stopped);
     imk_result_count(result, "other_frames", (long long)info->other_frames);
     imk_result_text(result, "frames", info->other_frames > 0 ? info->frames : NULL);
 }
@@ -425,6 +429,21 @@ static void show_motion(const imk_info_log *info, imk_result *result)
                         "--accel-range, or --gyro-scale and --accel-scale.");
 }
 
+static void notes_data(const imk_info_log *info, imk_result *result)
+{
+    char text[900];
+    imk_result_array(result, "notes");
+    for (size_t k = 0; k < info->findings.count; k++)
+        if (info->findings.item[k].level == IMK_FINDING_NOTE) {
+            imk_finding_text(&info->findings.item[k], text, sizeof text);
+            imk_result_object(result, NULL);
+            imk_result_text(result, "code", imk_finding_code(&info->findings.item[k]));
+            imk_result_text(result, "message", text);
+            imk_result_end(result);
+        }
+    imk_result_end(result);
+}
+
 static void show_data(const imk_info_log *info, const imk_info_file *file, const char *name,
                       const char *chosen, const char *next, imk_result *result)
 {
@@ -444,6 +463,7 @@ static void show_data(const imk_info_log *info, const imk_info_file *file, const
         imk_result_text(result, "motion", motion_keys[info->motion]);
         imk_result_number(result, "resting", info->resting);
         imk_result_count(result, "attitudes", (long long)info->attitudes);
+        notes_data(info, result);
         imk_result_array(result, "columns");
         for (size_t i = 0; i < info->channel_count; i++)
             channel_data(&info->channel[i], result);

@@ -81,7 +81,7 @@ static bool add_missing(imki_coding *coding, uint64_t bits)
 /* @return false: it has no such meaning */
 static bool take_attribute(hid_t dataset, int name, imki_value_type array, imki_coding *coding)
 {
-    number value[IMKI_MISSING_MAX];
+    number value[IMKI_MISSING_MAX] = {{.whole = 0}};
     imki_value_type from;
     const hid_t attribute = H5Aopen(dataset, names[name], H5P_DEFAULT);
     if (attribute < 0)
@@ -89,9 +89,11 @@ static bool take_attribute(hid_t dataset, int name, imki_value_type array, imki_
     const bool scales = name == FACTOR || name == OFFSET;
     const size_t count = read_numbers(attribute, scales || array == IMKI_FLOAT64, &from, value);
     H5Aclose(attribute);
+    if (scales && count != 1)
+        return false;
     if (scales) {
         *(name == FACTOR ? &coding->factor : &coding->offset) = value[0].real;
-        return count == 1 && isfinite(value[0].real) && coding->factor != 0.0;
+        return isfinite(value[0].real) && coding->factor != 0.0;
     }
     const hid_t type = H5Dget_type(dataset);
     bool room = true;

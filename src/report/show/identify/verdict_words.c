@@ -83,6 +83,7 @@ static const struct words {
     {"stamps:held", "rows repeat the samples of a slower sensor", NULL},
     {"stamps:sparse", "a slower sensor has no values in other rows", NULL},
     {"stamps:rate_differs", "--rate is not the rate of the time column", NULL},
+    {"uneven_increments", "increments are divided by steps of the time that are not even", NULL},
     {"unused_axis", "an axis is missing, and a column that looks like it is not used", NULL},
     {"unused_sensor", "a sensor that seems to be in the log is not read", NULL},
     {"unknown_channels", "no column is read as one of a gyro or an accelerometer", NULL},
