@@ -144,8 +144,8 @@ static bool read_exponent(reader *r, int *halves)
     static const struct {
         const char *text;
         int halves;
-    } superscripts[] = {{"²", 4},   {"³", 6},   {"½", 1}, {"⁻¹", -2},
-                        {"⁻²", -4}, {"⁻³", -6}, {"2", 4}, {"3", 6}};
+    } superscripts[] = {{"²", 4}, {"³", 6}, {"½", 1},   {"⁻¹", -2}, {"⁻²", -4}, {"⁻³", -6},
+                        {"2", 4}, {"3", 6}, {"-1", -2}, {"-2", -4}, {"-3", -6}};
     *halves = 2;
     if (take(r, "^") || take(r, "**")) {
         const bool bracket = take(r, "(");
