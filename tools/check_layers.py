@@ -152,18 +152,21 @@ def symbols():
                     ["cmake", "--build", BUILD, "-j", str(os.cpu_count()), "--target", *OBJECTS]):
         if subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode != 0:
             sys.exit("it does not compile")
-    defined, used = {}, {}
     sources = [file.relative_to(ROOT).as_posix() for file in code_files()
                if file.suffix == ".c"]
-    objects = [(source, BUILD / f"CMakeFiles/{target}.dir/{source}.o")
-               for source in sources for target in OBJECTS]
-    for source, path in objects:
-        if not path.exists():  # in another target, or not for this machine
-            continue
-        listing = subprocess.run(["nm", "-P", path], capture_output=True, text=True, check=True)
-        names = [line.split() for line in listing.stdout.splitlines()]
-        defined[source] = {name for name, kind, *_ in names if kind in "TDRBV"}
-        used[source] = {name for name, kind, *_ in names if kind == "U"}
+    objects = {str(path): source for source in sources for target in OBJECTS
+               if (path := BUILD / f"CMakeFiles/{target}.dir/{source}.o").exists()}
+    defined = {source: set() for source in objects.values()}
+    used = {source: set() for source in objects.values()}
+    listing = subprocess.run(["nm", "-P", "-A", *objects], capture_output=True, text=True,
+                             check=True)
+    for line in listing.stdout.splitlines():
+        path, symbol = line.split(": ", 1)
+        name, kind, *_ = symbol.split()
+        if kind in "TDRBV":
+            defined[objects[path]].add(name)
+        elif kind == "U":
+            used[objects[path]].add(name)
     return defined, used
 
 

@@ -142,6 +142,8 @@ static void test_runs(void **state)
     check_contains(out, "source: \"run1.npy, run2.npy, run3.npy\"", "joint.yaml");
     check_contains(out, "15 min at 100 Hz", "joint.yaml");
     assert_null(strstr(out, "rate_ramp"));
+    if (check_quick())
+        return;
     assert_int_equal(run("$I identify run1.npy run2.npy run3.npy --runs --truth model.yaml"), 0);
     check_contains(out, "The 3 logs agree", "runs");
     check_contains(out, "mean from run to run", "runs");

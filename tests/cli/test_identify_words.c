@@ -95,6 +95,8 @@ static void test_step(void **state)
 static void test_json(void **state)
 {
     (void)state;
+    if (check_quick())
+        return;
     make_log("if (t > 450) $3 += 1");
     identify_log("--json");
     json_t *root = json_loads(out, 0, NULL);
@@ -340,6 +342,8 @@ static void test_motion_that_wanders(void **state)
 static void test_lines_everywhere(void **state)
 {
     (void)state;
+    if (check_quick())
+        return;
     make_log("if (NR % 97 == 0) $3 = -999 - NR / 1000");
     assert_int_equal(run("$I identify log.csv"), 1);
     check_contains(err, "gyro_y: 185 of 18000 samples are off the others by up to 1016.9 deg/s",

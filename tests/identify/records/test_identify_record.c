@@ -171,6 +171,8 @@ static void test_tone(void **state)
     (void)state;
     static const double amplitudes[] = {0.6, 3, 30};
     for (size_t i = 0; i < 3; i++) {
+        if (check_skips(i, 3))
+            continue;
         truth t = usual;
         t.sinusoid = (imk_sinusoid){.amplitude = amplitudes[i], .frequency = 17.3041};
         double *x = make_record(&t, N, 7);
@@ -216,6 +218,8 @@ static void test_division(void **state)
     CHECK_OK(pass(x, N + 12345, N + 12345, &at_once, first, &count, NULL));
     static const size_t parts[] = {1, 777, 8192, 65537};
     for (size_t i = 0; i < 4; i++) {
+        if (check_skips(i, 2))
+            continue;
         memset(&result, 0, sizeof result);
         CHECK_OK(pass(x, N + 12345, parts[i], &result, again, &count_again, NULL));
         assert_memory_equal(&result, &at_once, sizeof result);
@@ -346,6 +350,8 @@ static void test_scale(void **state)
     const imk_identification plain = identify_passing(x, N / 2);
     static const int exponents[] = {-600, 600};
     for (size_t e = 0; e < 2; e++) {
+        if (check_skips(e, 2))
+            continue;
         for (size_t i = 0; i < N / 2; i++)
             y[i] = ldexp(x[i], exponents[e]);
         const imk_identification r = identify_passing(y, N / 2);
