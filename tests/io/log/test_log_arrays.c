@@ -147,11 +147,14 @@ static void coded_otherwise(void **state)
 {
     (void)state;
     static const struct {
-        const char *topic, *unread;
+        const char *topic, *unread, *kind;
         imk_quantity read;
-    } groups[] = {{"text", "/text/accel", IMK_QUANTITY_ANGULAR_RATE},
-                  {"list", "/list/gyro", IMK_QUANTITY_SPECIFIC_FORCE}};
-    for (size_t i = 0; i < 2; i++) {
+    } groups[] = {
+        {"text", "/text/accel", "dataset whose scale_factor is unclear", IMK_QUANTITY_ANGULAR_RATE},
+        {"list", "/list/gyro", "dataset whose scale_factor is unclear",
+         IMK_QUANTITY_SPECIFIC_FORCE},
+        {"sign", "/sign/gyro", "dataset whose _Unsigned is unclear", IMK_QUANTITY_SPECIFIC_FORCE}};
+    for (size_t i = 0; i < sizeof groups / sizeof groups[0]; i++) {
         imk_log log;
         imk_error error;
         const imk_log_settings s = settings_of(&(settings){.topic = groups[i].topic});
@@ -165,7 +168,7 @@ static void coded_otherwise(void **state)
         }
         assert_int_equal(log.findings.unread, 1);
         assert_string_equal(log.findings.unread_name, groups[i].unread);
-        assert_string_equal(log.findings.unread_kind, "dataset whose scale_factor is unclear");
+        assert_string_equal(log.findings.unread_kind, groups[i].kind);
         imk_log_free(&log);
     }
 }

@@ -109,6 +109,11 @@ bool imki_hdf5_coding(hid_t dataset, const imki_hdf5_array *array, imki_coding *
 {
     bool coded = false;
     *coding = (imki_coding){.factor = 1.0};
+    /* Of numbers that are written as if they had a sign. */
+    if (array->type == IMKI_INT64 && H5Aexists(dataset, "_Unsigned") > 0) {
+        snprintf(obstacle, size, "dataset whose _Unsigned is unclear");
+        return false;
+    }
     for (int name = 0; name < NAMES; name++) {
         if (H5Aexists(dataset, names[name]) <= 0)
             continue;

@@ -158,6 +158,9 @@ with hdf5("coded.h5") as f:
     coded("list/accel", accel, "m/s^2", missing_value=1 << 60)
     coded("list/gyro", gyro, "rad/s", scale_factor=[1., 2., 3.])
     coded("table", table, ["s", "rad/s", "m/s^2"], add_offset=1.0)
+    coded("sign/t", t, "s")
+    coded("sign/accel", accel, "m/s^2")
+    coded("sign/gyro", gyro.astype("i2"), "rad/s", _Unsigned="true")
 
 # What save -v7.3 of MATLAB makes: a head in front, and what the numbers are in attributes.
 with hdf5("matlab.mat", userblock_size=512) as f:
