@@ -348,6 +348,10 @@ static void turns_the_other_way_round(void **state)
     check_contains(err, "the placements scatter by 0.42 deg", line);
     check_says("$I calibrate " SESSION " " FACES " --turn-angle -360deg", 0, out,
                "all gyros read the full turns with the opposite sign");
+    if (check_quick()) {
+        sweep();
+        return;
+    }
     check_says("gzip -dc " SESSION " | awk -F, -v OFS=, 'NR > 1 {for (i = 6; i < 9; i++) $i = -$i} "
                "1' >bad.csv; $I calibrate bad.csv " FACES,
                0, err, "all gyros read the full turns with the opposite sign");

@@ -60,6 +60,10 @@ static void filled_rows_are_found(void **state)
     check_doubt(CHANGED("if (NR % 20 == 0) for (i = 2; i < 8; i++) $i = 0"),
                 "all gyro axes have the value 0");
     check_contains(err, "all accelerometer axes have the value 0", "both");
+    if (check_quick()) {
+        sweep();
+        return;
+    }
     check_doubt(CHANGED("if (NR % 40 == 0) for (i = 2; i < 5; i++) $i = -999"),
                 "all gyro axes have the same values");
     sweep();
@@ -71,6 +75,10 @@ static void references_are_compared(void **state)
     write_table();
     check_doubt(CHANGED("for (i = 11; i < 14; i++) $i = -$i"),
                 "the columns have the opposite sign");
+    if (check_quick()) {
+        sweep();
+        return;
+    }
     check_doubt(CHANGED("for (i = 11; i < 14; i++) $i /= 9.80665"), "they look like g;");
     check_doubt(CHANGED("t = $11; $11 = $12; $12 = t"), "check signs and order of their axes");
     check_doubt("awk -F, -v OFS=, '{for (i = 8; i < 14; i++) {t = $i; if (NR > 1) $i = w[(NR - 32) "
