@@ -99,9 +99,17 @@ typedef struct imk_term_display {
     char name[40]; /**< in words: "angle random walk" */
     imk_unit unit; /**< unit that a person reads */
     char si[40];   /**< unit of the SI value */
+    double si_scale; /**< a strength divided by it is in that unit */
 } imk_term_display;
 /** Names and units of a noise term for the kind of sensor of the column. */
 IMK_API imk_term_display imk_channel_term(const imk_log_column *column, imk_noise_term term);
+/** The same of a term that was identified: what was not counted (imk_identification_counted()) has
+ *  the name of white noise of the integral, and unit.scale and si_scale lead from the strength Q of
+ *  its readings to A = Q sqrt(dt). */
+IMK_API imk_term_display imk_identified_term(const imk_log_column *column,
+                                             const imk_identification *result, imk_noise_term term);
+/** The names and units of white noise of the integral A, of samples dt apart; as above. */
+IMK_API imk_term_display imk_channel_angle_white(const imk_log_column *column, double dt);
 
 /** Where the sensor was moved, on any channel; times from the first row that was read [s]. */
 typedef struct imk_identify_moves {

@@ -18,15 +18,17 @@ IMK_BEGIN_C
 /** The noise expected on one axis. Sinusoids are left out: identification finds and subtracts them
  *  with almost no loss. */
 typedef struct imk_expected_noise {
-    double term[IMK_NOISE_TERMS]; /**< Q, N, B, K, R, each in its unit; 0: absent */
+    double term[IMK_NOISE_TERMS]; /**< Q, N, B, K, R, each in its unit; 0: absent. Q with white
+                                     noise of the integral: imk_noise_reading() */
     imk_low_pass filter;          /**< bandwidth 0: none */
     int gauss_markov_count, resonance_count;
     imk_gauss_markov gauss_markov[IMK_TERMS_MAX];
     imk_resonance resonance[IMK_TERMS_MAX];
 } imk_expected_noise;
 
-/** The noise of one axis of a model. Terms of strength 0 are left out. */
-IMK_API imk_expected_noise imk_expected_noise_of(const imk_triad *triad, int axis);
+/** The noise of one axis of a model, sampled at intervals dt [s]. Terms of strength 0 are left out.
+ */
+IMK_API imk_expected_noise imk_expected_noise_of(const imk_triad *triad, int axis, double dt);
 
 typedef struct imk_bounds_settings {
     uint32_t cookie;

@@ -40,7 +40,8 @@ IMK_BEGIN_C
     TERM(RANDOM_WALK, random_walk, 3)                                                              \
     TERM(GAUSS_MARKOV, gauss_markov, 4)                                                            \
     TERM(SINUSOID, sinusoid, 5)                                                                    \
-    TERM(RESONANCE, resonance, 6)
+    TERM(RESONANCE, resonance, 6)                                                                  \
+    TERM(ANGLE_WHITE, angle_white, 14)
 
 /** Term numbers of the random streams: imk_stream(run, term, instance, axis). Fixed for ever. */
 enum {
@@ -308,6 +309,30 @@ IMK_API imk_status imk_resonance_arma(imk_resonance resonance, double dt, imk_ar
 IMK_API imk_status imk_resonance_start(imk_arma_state *state, imk_resonance resonance, double dt,
                                        imk_random random, uint64_t stream);
 
+/* ---- white noise of the integrated output: A [unit s/sqrt(Hz)], two-sided density A^2 ------- */
+
+/** 3 A^2/(dt tau^2) [unit^2], for readings of the integral that are means over dt [s]. Unlike that
+ *  of other terms it depends on the sample interval. */
+IMK_API double imk_angle_white_allan_variance(double density, double dt, double tau);
+/** 3 A^2/(dt tau^2) at tau = n dt, exact. */
+IMK_API double imk_angle_white_sampled_allan_variance(double density, double dt, size_t n);
+/** 4 A^2 sin^2(pi f dt)/dt^2, which is A^2 (2 pi f)^2 at low frequencies. */
+IMK_API double imk_angle_white_sampled_spectrum(double density, double dt, double frequency);
+
+typedef struct imk_angle_white_state {
+    imk_random random;
+    uint64_t stream, next;
+    double last; /**< normal of the sample before */
+    double step; /**< A/dt^1.5 [unit] */
+    imk_noise_block block;
+} imk_angle_white_state;
+/** Start white noise of the integral: each reading of the integral has an independent error of 1
+ *  sigma A/sqrt(dt), and a sample is the difference of two over dt. */
+IMK_API imk_status imk_angle_white_start(imk_angle_white_state *state, double density, double dt,
+                                         imk_random random, uint64_t stream);
+/** Add the next `count` samples. */
+IMK_API void imk_angle_white_add(imk_angle_white_state *state, size_t count, double *out);
+
 /* ---- quantization of the integrated output -------------------------------------------------- */
 
 /** 3 Q^2/tau^2 [unit^2], for Q = LSB/sqrt(12) [unit s] and an input busy enough to make the
@@ -324,10 +349,17 @@ typedef struct imk_quantization_state {
     double residual;     /**< of the integral at the last segment's end; |residual| <= lsb/2 */
     double sum, counted; /**< since that end: integral without the residual, and steps given out */
     uint64_t next;       /**< next sample */
+    double dither;       /**< 1 sigma of the dither [unit s] */
+    double moved;        /**< by the dither, at the last reading [unit s] */
+    imk_random random;
+    uint64_t stream;
 } imk_quantization_state;
-/** Start quantization; the first residual is drawn uniformly from the stream. */
-IMK_API imk_status imk_quantization_start(imk_quantization_state *state, double q, double dt,
-                                          imk_random random, uint64_t stream);
+/** Start quantization; the first residual is drawn uniformly from the stream.
+ *  @param dither  1 sigma, at the readings, of a motion that is counted with the input and taken out
+ *                 of the output, independent from reading to reading [unit s]; 0: none. From half an
+ *                 LSB on the errors of counting are white to 1.5 % of an LSB, whatever the input */
+IMK_API imk_status imk_quantization_start(imk_quantization_state *state, double q, double dither,
+                                          double dt, imk_random random, uint64_t stream);
 /** Replace the rates in `out` by quantised increments divided by dt; the residual is carried over,
  *  so no rate is ever lost. Apply it last, to the sum of all other terms. */
 IMK_API void imk_quantization_apply(imk_quantization_state *state, size_t count, double *out);

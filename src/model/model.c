@@ -5,6 +5,7 @@
 #include "model_internal.h"
 #include "model_schema_internal.h"
 
+#include <math.h>
 #include <string.h>
 
 static void set_triad(imk_triad *triad, bool present)
@@ -32,6 +33,12 @@ const imk_triad *imk_model_triad(const imk_model *model, int sensor)
 imk_triad *imk_model_triad_to_set(imk_model *model, int sensor)
 {
     return sensor == IMK_GYRO ? &model->gyro : sensor == IMK_ACCEL ? &model->accel : &model->mag;
+}
+
+double imk_noise_reading(const imk_noise *noise, int axis, double dt)
+{
+    const double q = noise->quantization.value[axis], a = noise->angle_white.value[axis];
+    return a == 0.0 ? q : sqrt(q * q + a * a / dt);
 }
 
 /* ---- comparison -------------------------------------------------------------------------------

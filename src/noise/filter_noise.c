@@ -235,6 +235,7 @@ imk_status imk_filter_noise_of(const imk_triad *triad, int axis,
     const imk_noise *n = &triad->noise;
     imk_filter_noise made = {.white = n->white.value[axis],
                              .quantization = n->quantization.value[axis],
+                             .angle_white = n->angle_white.value[axis],
                              .lost = lost_terms(triad, axis)};
     for (int i = 0; i < n->gauss_markov_count; i++)
         if (n->gauss_markov[i].sigma.value[axis] > 0)

@@ -255,9 +255,10 @@ static size_t processes(imki_term_place place, double dt, imki_process *process)
     return STAGES;
 }
 
-static double allan_variance(imki_term_place place, double tau)
+static double mean_variance(imki_term_place place, double dt, double time)
 {
-    return imk_flicker_allan_variance(strength(place), tau);
+    (void)dt;
+    return imk_flicker_allan_variance(strength(place), time);
 }
 
 const imki_noise_term imki_flicker_term = {
@@ -267,4 +268,4 @@ const imki_noise_term imki_flicker_term = {
     .strength = strength,
     .generator = &generator,
     .processes = processes,
-    .allan_variance = allan_variance};
+    .mean_variance = mean_variance};

@@ -175,9 +175,10 @@ static size_t processes(imki_term_place place, double dt, imki_process *process)
     return one;
 }
 
-static double allan_variance(imki_term_place place, double tau)
+static double mean_variance(imki_term_place place, double dt, double time)
 {
-    return imk_gauss_markov_allan_variance(process_at(place), tau);
+    (void)dt;
+    return imk_gauss_markov_allan_variance(process_at(place), time);
 }
 
 const imki_noise_term imki_gauss_markov_term = {
@@ -188,4 +189,4 @@ const imki_noise_term imki_gauss_markov_term = {
     .strength = strength,
     .generator = &generator,
     .processes = processes,
-    .allan_variance = allan_variance};
+    .mean_variance = mean_variance};

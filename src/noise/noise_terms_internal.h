@@ -46,7 +46,8 @@ typedef enum imki_process_kind {
     IMKI_PROCESS_WALK,        /* from 0, K = size */
     IMKI_PROCESS_FIRST_ORDER, /* of variance size^2 and this correlation time */
     IMKI_PROCESS_SINE,        /* of amplitude size, this frequency, and random phase */
-    IMKI_PROCESS_RESONANCE    /* of variance size^2, this frequency and quality */
+    IMKI_PROCESS_RESONANCE,   /* of variance size^2, this frequency and quality */
+    IMKI_PROCESS_READING      /* errors of the readings of the integral, 1 sigma size [unit s] */
 } imki_process_kind;
 
 typedef struct imki_process {
@@ -71,7 +72,9 @@ typedef struct imki_noise_term {
     double (*strength)(imki_term_place place);  /* 0: not on this axis */
     const imki_generator *generator, *filtered; /* the second where the axis has a bandwidth */
     size_t (*processes)(imki_term_place place, double dt, imki_process *process);
-    double (*allan_variance)(imki_term_place place, double tau);
+    /* of a mean over a time: the Allan variance of a process, which is half the mean square
+     * difference of two such means side by side */
+    double (*mean_variance)(imki_term_place place, double dt, double time);
 } imki_noise_term;
 
 /* Of IMK_NOISE_TERM_LIST. */

@@ -88,9 +88,10 @@ static size_t processes(imki_term_place place, double dt, imki_process *process)
     return imki_one_process(process, IMKI_PROCESS_WALK, strength(place));
 }
 
-static double allan_variance(imki_term_place place, double tau)
+static double mean_variance(imki_term_place place, double dt, double time)
 {
-    return imk_random_walk_allan_variance(strength(place), tau);
+    (void)dt;
+    return imk_random_walk_allan_variance(strength(place), time);
 }
 
 const imki_noise_term imki_random_walk_term = {
@@ -100,4 +101,4 @@ const imki_noise_term imki_random_walk_term = {
     .strength = strength,
     .generator = &generator,
     .processes = processes,
-    .allan_variance = allan_variance};
+    .mean_variance = mean_variance};

@@ -117,9 +117,10 @@ static size_t processes(imki_term_place place, double dt, imki_process *process)
     return one;
 }
 
-static double allan_variance(imki_term_place place, double tau)
+static double mean_variance(imki_term_place place, double dt, double time)
 {
-    return imk_resonance_allan_variance(resonance_at(place), tau);
+    (void)dt;
+    return imk_resonance_allan_variance(resonance_at(place), time);
 }
 
 const imki_noise_term imki_resonance_term = {.path = {"noise.resonance", "noise.resonance"},
@@ -129,4 +130,4 @@ const imki_noise_term imki_resonance_term = {.path = {"noise.resonance", "noise.
                                              .strength = strength,
                                              .generator = &generator,
                                              .processes = processes,
-                                             .allan_variance = allan_variance};
+                                             .mean_variance = mean_variance};

@@ -116,9 +116,10 @@ static size_t processes(imki_term_place place, double dt, imki_process *process)
     return one;
 }
 
-static double allan_variance(imki_term_place place, double tau)
+static double mean_variance(imki_term_place place, double dt, double time)
 {
-    return imk_sinusoid_allan_variance(sinusoid_at(place), tau);
+    (void)dt;
+    return imk_sinusoid_allan_variance(sinusoid_at(place), time);
 }
 
 const imki_noise_term imki_sinusoid_term = {.path = {"noise.sinusoid", "noise.sinusoid"},
@@ -128,4 +129,4 @@ const imki_noise_term imki_sinusoid_term = {.path = {"noise.sinusoid", "noise.si
                                             .strength = strength,
                                             .generator = &generator,
                                             .processes = processes,
-                                            .allan_variance = allan_variance};
+                                            .mean_variance = mean_variance};

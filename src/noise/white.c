@@ -80,9 +80,10 @@ static size_t processes(imki_term_place place, double dt, imki_process *process)
     return imki_one_process(process, IMKI_PROCESS_WHITE, strength(place));
 }
 
-static double allan_variance(imki_term_place place, double tau)
+static double mean_variance(imki_term_place place, double dt, double time)
 {
-    return imk_white_allan_variance(strength(place), tau);
+    (void)dt;
+    return imk_white_allan_variance(strength(place), time);
 }
 
 const imki_noise_term imki_white_term = {
@@ -93,4 +94,4 @@ const imki_noise_term imki_white_term = {
     .generator = &generator,
     .filtered = &imki_filtered_white,
     .processes = processes,
-    .allan_variance = allan_variance};
+    .mean_variance = mean_variance};

@@ -14,7 +14,9 @@ static imk_model full_model(void)
         model = random_model(&random, 1, false);
     while (!model.gyro.present || !model.accel.present || model.gyro.resolution.value[0] != 0 ||
            model.accel.resolution.value[0] != 0 || model.gyro.noise.quantization.value[0] == 0 ||
-           model.accel.noise.quantization.value[0] == 0);
+           model.accel.noise.quantization.value[0] == 0 ||
+           model.gyro.noise.bias_instability.value[0] == 0 ||
+           model.accel.noise.bias_instability.value[0] == 0);
     CHECK_OK(imk_model_validate(&model, NULL));
     return model;
 }

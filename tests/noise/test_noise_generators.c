@@ -535,7 +535,7 @@ static void test_quantization_residual(void **unused)
     const double rate[] = {9.8e-9, -3.1e-5, 0.7, 9.80665, -150.0}; /* 0.002 deg/h first */
     for (size_t r = 0; r < 5; r++) {
         imk_quantization_state state;
-        CHECK_OK(imk_quantization_start(&state, q, interval, imk_random_seeded(8), r));
+        CHECK_OK(imk_quantization_start(&state, q, 0, interval, imk_random_seeded(8), r));
         long double in = state.residual, out = 0.0L;
         assert_true(fabs(state.residual) <= lsb / 2.0);
         for (int block = 0; block < 200; block++) {
@@ -570,7 +570,7 @@ static void test_quantization_allan_variance(void **unused)
             imk_random random = imk_random_seeded(seeds[s]);
             CHECK_OK(imk_white_start(&white, 10.0 * sqrt(interval) / interval, interval, random,
                                      imk_stream(run, 1, 0, 0)));
-            CHECK_OK(imk_quantization_start(&state, q, interval, random, imk_stream(run, 7, 0, 0)));
+            CHECK_OK(imk_quantization_start(&state, q, 0, interval, random, imk_stream(run, 7, 0, 0)));
             memset(samples, 0, sizeof samples);
             imk_white_add(&white, LENGTH, samples);
             memcpy(samples + LENGTH, samples, LENGTH * sizeof *samples);
@@ -601,7 +601,7 @@ static void test_quantization_start(void **unused)
     (void)unused;
     for (uint32_t run = 0; run < STREAMS; run++) {
         imk_quantization_state state;
-        CHECK_OK(imk_quantization_start(&state, 2.0, 1.0, imk_random_seeded(1),
+        CHECK_OK(imk_quantization_start(&state, 2.0, 0, 1.0, imk_random_seeded(1),
                                         imk_stream(run, 7, 0, 0)));
         values[0][run] = state.residual;
         values[1][run] = state.residual * state.residual;

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How well the mean over a time T is known: the Allan variance at T of the terms of the model,
- * which is half the mean square difference of two such means side by side. A quantized integral is
- * the exception: over one stretch only its two ends count, 2 Q^2/T^2. Rounded samples add step^2/12
- * of each. */
+/* How well the mean over a time T is known. Of a quantized integral only the two ends of the
+ * stretch count, 2 Q^2/T^2. Rounded samples add step^2/12 of each. */
 #include "plan_internal.h"
 
 #include "noise/noise_terms_internal.h"
@@ -21,7 +19,7 @@ double imki_plan_mean_variance(const imk_triad *triad, int axis, double dt, doub
         imki_term_place place = {triad, axis, 0};
         for (; place.instance < count; place.instance++)
             if (term->strength(place) != 0.0)
-                variance += term->allan_variance(place, time);
+                variance += term->mean_variance(place, dt, time);
     }
     return variance + imk_ramp_allan_variance(triad->noise.ramp.value[axis], time) +
            2.0 * q * q / (time * time) + step * step / 12.0 * dt / time;

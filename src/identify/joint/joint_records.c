@@ -167,8 +167,13 @@ imk_status imk_identify_joint(const imk_identify_settings *settings, size_t coun
         imki_joint_agreement(&work, &found, count, summaries, other, &agree);
     imki_identify_intervals(&work, &found);
     found.term[IMK_NOISE_RAMP] = (imk_estimate){0}; /* nothing is known of one: each had its own */
-    for (size_t r = 0; r < count; r++)
+    found.dt = settings->dt;
+    found.resolution = single[0].resolution;
+    for (size_t r = 0; r < count; r++) {
         found.mean += single[r].mean / (double)count;
+        if (fabs(single[r].resolution - single[0].resolution) > 0.01 * single[0].resolution)
+            found.resolution = 0; /* no grid of all */
+    }
     imki_identification_rescale(&found, 1 / work.scale);
     if (!imki_identification_is_finite(&found))
         return imk_error_set(error, IMK_ERROR_NO_CONVERGENCE, NULL, "no noise in the records",

@@ -2,6 +2,7 @@
 /* From what was identified on one channel to the terms and the evidence of a sensor model. */
 #include "imukit/identify.h"
 
+#include <math.h>
 #include <string.h>
 
 /* The interval of a key and instance, added when it is not there yet; NULL when the list is full.
@@ -35,6 +36,37 @@ static void store(const imk_estimate *estimate, imk_axes *axes, imk_evidence *ev
     }
 }
 
+bool imk_identification_counted(const imk_identification *result)
+{
+    const imk_estimate *q = &result->term[IMK_NOISE_QUANTIZATION];
+    const double step = result->resolution * result->dt, size = step / sqrt(12);
+    if (!(result->dt > 0))
+        return true;
+    return step > 0 && ((size >= q->lower && size <= q->upper) ||
+                        fabs(sqrt(12) * q->value - step) < 0.2 * step);
+}
+
+static imk_estimate scaled(const imk_estimate *e, double factor)
+{
+    return (imk_estimate){e->present,        e->value * factor, e->sigma * factor,
+                          e->lower * factor, e->upper * factor, e->free_value * factor};
+}
+
+/* Errors of the readings of the integral. If there are none, what they are less than holds for
+ * counts. */
+static void store_readings(const imk_identification *result, imk_noise *noise,
+                           imk_evidence *evidence, int sensor, int axis)
+{
+    static const char *const white[2] = {"noise.angle_white", "noise.velocity_white"};
+    const imk_estimate *e = &result->term[IMK_NOISE_QUANTIZATION];
+    if (e->present && !imk_identification_counted(result)) {
+        const imk_estimate a = scaled(e, sqrt(result->dt));
+        store(&a, &noise->angle_white, evidence, white[sensor], 0, axis);
+    } else {
+        store(e, &noise->quantization, evidence, "noise.quantization", 0, axis);
+    }
+}
+
 void imk_identification_store(const imk_identification *result, imk_model *model, int sensor,
                               int axis)
 {
@@ -49,7 +81,8 @@ void imk_identification_store(const imk_identification *result, imk_model *model
         {"noise.quantization", "noise.velocity_random_walk", "noise.bias_instability",
          "noise.acceleration_random_walk", "noise.acceleration_ramp"}};
     triad->present = true;
-    for (int term = 0; term < IMK_NOISE_TERMS; term++)
+    store_readings(result, noise, evidence, sensor, axis);
+    for (int term = IMK_NOISE_WHITE; term < IMK_NOISE_TERMS; term++)
         store(&result->term[term], axes[term], evidence, keys[sensor][term], 0, axis);
 
     for (int i = 0; i < result->gauss_markov_count; i++) {

@@ -145,6 +145,7 @@ static void take_record(imki_work *w, const double *samples, imk_identification 
         w->samples[i] = (samples[i] - samples[0]) * w->scale - mean;
         squares += isnan(samples[i]) ? 0 : w->samples[i] * w->samples[i];
     }
+    result->dt = w->settings->dt;
     result->mean = samples[0] + mean / w->scale;
     result->deviation = sqrt(squares / (double)(present - 1)) / w->scale;
 }

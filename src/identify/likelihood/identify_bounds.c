@@ -56,12 +56,12 @@ imk_bounds_settings imk_bounds_default(void)
                                  .shape = true};
 }
 
-imk_expected_noise imk_expected_noise_of(const imk_triad *triad, int axis)
+imk_expected_noise imk_expected_noise_of(const imk_triad *triad, int axis, double dt)
 {
     const imk_noise *n = &triad->noise;
     imk_expected_noise noise = {
-        .term = {n->quantization.value[axis], n->white.value[axis], n->bias_instability.value[axis],
-                 n->random_walk.value[axis], n->ramp.value[axis]},
+        .term = {imk_noise_reading(n, axis, dt), n->white.value[axis],
+                 n->bias_instability.value[axis], n->random_walk.value[axis], n->ramp.value[axis]},
         .filter = {triad->bandwidth.value[axis], triad->damping.value[axis]}};
     for (int i = 0; i < n->gauss_markov_count; i++)
         if (n->gauss_markov[i].sigma.value[axis] > 0)

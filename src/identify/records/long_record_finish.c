@@ -160,6 +160,7 @@ imk_status imk_identify_record_finish(imk_identify_record *r, const imk_identify
     imki_record_bridge(r->mean_count, r->means, 1, 0);
     imk_identification found = {0};
     describe_samples(r, &found);
+    found.dt = settings->dt;
 
     const parts p = parts_of(r);
     imki_parts room = imki_parts_of(workspace);

@@ -11,10 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const units[2][5] = {
-    {"rad/s", "rad/s/sqrt(Hz)", "rad/s^2/sqrt(Hz)", "rad", "rad/s"},
-    {"m/s^2", "m/s^2/sqrt(Hz)", "m/s^3/sqrt(Hz)", "m/s", "m/s^2"}};
-enum { UNIT_READING, UNIT_WHITE, UNIT_DRIVING, UNIT_INTEGRAL, UNIT_BIAS };
+static const char *const units[2][6] = {
+    {"rad/s", "rad/s/sqrt(Hz)", "rad/s^2/sqrt(Hz)", "rad", "rad/s", "rad/sqrt(Hz)"},
+    {"m/s^2", "m/s^2/sqrt(Hz)", "m/s^3/sqrt(Hz)", "m/s", "m/s^2", "m/s/sqrt(Hz)"}};
+enum { UNIT_READING, UNIT_WHITE, UNIT_DRIVING, UNIT_INTEGRAL, UNIT_BIAS, UNIT_INTEGRAL_WHITE };
 
 static const char *const sources[] = {[IMK_FILTER_FROM_RANDOM_WALK] = "random_walk",
                                       [IMK_FILTER_FROM_GAUSS_MARKOV] = "gauss_markov",
@@ -234,7 +234,7 @@ static void note_what_is_lost(imki_parameters *p, const char *sensor,
     bool quantized = false;
     for (int axis = 0; axis < 3; axis++) {
         worst = noise[axis].misfit > worst->misfit ? &noise[axis] : worst;
-        quantized = quantized || noise[axis].quantization > 0;
+        quantized = quantized || noise[axis].quantization > 0 || noise[axis].angle_white > 0;
     }
     if (worst->misfit > 0 && settings->flicker != IMK_FILTER_FLICKER_LEFT_OUT)
         imki_note(p, false,
@@ -244,8 +244,8 @@ static void note_what_is_lost(imki_parameters *p, const char *sensor,
                   worst->misfit_tau);
     if (quantized)
         imki_note(p, false,
-                  "%s: quantization is measurement noise of the integral (R of a filter), not "
-                  "process noise: Q does not contain it",
+                  "%s: quantization and white noise of the integral are measurement noise of the "
+                  "integral (R of a filter), not process noise: Q does not contain them",
                   sensor);
 }
 
@@ -256,7 +256,7 @@ static void write_sensor(tree_writer *w, int kind)
     const char *const *unit = units[kind];
     const double dt = 1 / p->settings->rate;
     imk_filter_noise noise[3];
-    double white[3], sampled[3], angle[3], quantization[3];
+    double white[3], sampled[3], angle[3], quantization[3], angle_white[3];
     if (!triad->present)
         return;
     for (int axis = 0; axis < 3; axis++) {
@@ -269,6 +269,7 @@ static void write_sensor(tree_writer *w, int kind)
         sampled[axis] = white[axis] / sqrt(dt);
         angle[axis] = white[axis] * sqrt(dt);
         quantization[axis] = noise[axis].quantization;
+        angle_white[axis] = noise[axis].angle_white;
     }
     note_what_is_lost(p, imki_kind_names[kind], noise, &p->settings->filter);
     put_key(w, imki_kind_names[kind]);
@@ -282,6 +283,8 @@ static void write_sensor(tree_writer *w, int kind)
                "of the integral: sigma_c sqrt(dt)");
     put_vector(w, "quantization", quantization, unit[UNIT_INTEGRAL],
                "1 sigma of each reading of the integral: measurement noise");
+    put_vector(w, "integral_white_noise", angle_white, unit[UNIT_INTEGRAL_WHITE],
+               "sigma of a reading of the integral: this/sqrt(dt), beside quantization");
     put_vector(w, "initial_bias_sigma", triad->bias.repeatability.value, unit[UNIT_BIAS],
                "from run to run");
     put_key(w, "bias_states");
@@ -378,6 +381,7 @@ static void read_sensor(imki_parameters *p, int node, int kind)
                                         "white_noise_per_reading",
                                         "white_noise_per_step",
                                         "quantization",
+                                        "integral_white_noise",
                                         "initial_bias_sigma",
                                         "bias_states",
                                         "x",
@@ -389,6 +393,8 @@ static void read_sensor(imki_parameters *p, int node, int kind)
                      triad->noise.white.value);
     imki_node_accept(p, node, "quantization", kind, IMKI_PLAIN, (imki_unit){unit[UNIT_INTEGRAL], 1},
                      triad->noise.quantization.value);
+    imki_node_accept(p, node, "integral_white_noise", kind, IMKI_PLAIN,
+                     (imki_unit){unit[UNIT_INTEGRAL_WHITE], 1}, triad->noise.angle_white.value);
     imki_node_accept(p, node, "initial_bias_sigma", kind, IMKI_BIAS,
                      (imki_unit){unit[UNIT_BIAS], 1}, triad->bias.repeatability.value);
     const int states = imki_node_value(p, node, "bias_states");

@@ -80,13 +80,16 @@ static void round_lists(imk_noise *noise, const char *unit)
 }
 
 /* Unit of the parameter a dotted key of the evidence names. */
-static const char *unit_of_key(const char *key, const imk_term_display *terms, const char *plain)
+static const char *unit_of_key(const char *key, const imk_term_display *terms,
+                               const imk_term_display *white, const char *plain)
 {
     if (strncmp(key, "noise.", 6) != 0)
         return plain;
     for (int term = 0; term < IMK_NOISE_TERMS; term++)
         if (strcmp(key + 6, terms[term].key) == 0)
             return terms[term].unit.text;
+    if (strcmp(key + 6, white->key) == 0)
+        return white->unit.text;
     return strstr(key, "time") ? "s" : plain;
 }
 
@@ -102,12 +105,14 @@ static void round_triad(imk_triad *triad, imk_evidence *evidence, imk_quantity q
         terms[term] = imk_channel_term(&column, (imk_noise_term)term);
         round_axes(axes[term], terms[term].unit.text);
     }
+    const imk_term_display white = imk_channel_angle_white(&column, 1);
+    round_axes(&noise->angle_white, white.unit.text);
     round_lists(noise, unit);
     round_axes(&triad->bandwidth, "Hz");
     round_axes(&triad->damping, "1");
     round_axes(&triad->resolution, unit);
     for (int i = 0; i < evidence->interval_count; i++)
-        round_interval(&evidence->interval[i], unit_of_key(evidence->interval[i].key, terms, unit));
+        round_interval(&evidence->interval[i], unit_of_key(evidence->interval[i].key, terms, &white, unit));
 }
 
 void imki_round_model(imk_model *model)

@@ -87,7 +87,7 @@ static void list_parameters(const planning *about)
     for (int sensor = 0; sensor < 2; sensor++) {
         const imk_triad *triad = imk_model_triad(about->model, sensor);
         for (int axis = 0; triad->present && axis < triad->axis_count; axis++) {
-            const imk_expected_noise noise = imk_expected_noise_of(triad, axis);
+            const imk_expected_noise noise = imk_expected_noise_of(triad, axis, about->settings.dt);
             add_axis(about->plan, &noise, sensor);
         }
     }
@@ -124,7 +124,7 @@ static imk_plan_record record_of(const planning *about, double duration)
     for (int sensor = 0; sensor < 2; sensor++) {
         const imk_triad *triad = imk_model_triad(about->model, sensor);
         for (int axis = 0; triad->present && axis < triad->axis_count; axis++) {
-            const imk_expected_noise noise = imk_expected_noise_of(triad, axis);
+            const imk_expected_noise noise = imk_expected_noise_of(triad, axis, about->settings.dt);
             imk_identification_bounds bounds;
             if (imk_identify_bounds(&noise, &about->settings, duration, &bounds, about->workspace,
                                     imk_bounds_workspace_size(), NULL) != IMK_OK)
@@ -172,7 +172,7 @@ static imk_status find_duration(const planning *about, imk_plan_requirement *ask
     const imk_identify_requirement requirement = {parameter->term, parameter->time, asked->relative,
                                                   asked->detection};
     for (int axis = 0; axis < triad->axis_count; axis++) {
-        const imk_expected_noise noise = imk_expected_noise_of(triad, axis);
+        const imk_expected_noise noise = imk_expected_noise_of(triad, axis, about->settings.dt);
         const int i = parameter->term - IMK_NOISE_TERMS;
         if (i < 0 ? noise.term[parameter->term] == 0 : i >= noise.gauss_markov_count)
             continue;

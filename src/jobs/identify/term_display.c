@@ -4,6 +4,7 @@
 
 #include "imukit/channel_units.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -30,24 +31,53 @@ static const struct term_text other_texts[IMK_NOISE_TERMS] = {
     {"random_walk", "random walk", "/sqrt(s)", NULL},
     {"ramp", "ramp", "/s", NULL}};
 
-imk_term_display imk_channel_term(const imk_log_column *column, imk_noise_term term)
+/* White noise of the integral, gyros, accelerometers, others. */
+static const struct term_text white_texts[3] = {
+    {"angle_white", "angle white noise", "arcsec/sqrt(Hz)", "rad/sqrt(Hz)"},
+    {"velocity_white", "velocity white noise", "m/s/sqrt(Hz)", "m/s/sqrt(Hz)"},
+    {"integral_white_noise", "white noise of the integral", " s/sqrt(Hz)", NULL}};
+
+static imk_term_display display_of(const imk_log_column *column, const struct term_text *text)
 {
-    imk_channel_kind kind = imk_channel_kind_of(column);
-    const struct term_text *text =
-        kind == IMK_CHANNEL_OTHER ? &other_texts[term] : &term_texts[kind][term];
     imk_term_display display;
     memset(&display, 0, sizeof display);
     snprintf(display.key, sizeof display.key, "%s", text->key);
     snprintf(display.name, sizeof display.name, "%s", text->name);
-    if (kind == IMK_CHANNEL_OTHER) {
+    if (text->si) {
+        display.unit = imk_unit_of(text->unit);
+        display.si_scale = 1;
+        snprintf(display.si, sizeof display.si, "%s", text->si);
+    } else {
         display.unit = imk_channel_plain_unit(column);
+        display.si_scale = display.unit.scale;
         char unit[48];
         snprintf(unit, sizeof unit, "%.30s%s", display.unit.text, text->unit);
         snprintf(display.unit.text, sizeof display.unit.text, "%s", unit);
         snprintf(display.si, sizeof display.si, "%.39s", unit);
-    } else {
-        display.unit = imk_unit_of(text->unit);
-        snprintf(display.si, sizeof display.si, "%s", text->si);
     }
     return display;
+}
+
+imk_term_display imk_channel_term(const imk_log_column *column, imk_noise_term term)
+{
+    const imk_channel_kind kind = imk_channel_kind_of(column);
+    return display_of(column,
+                      kind == IMK_CHANNEL_OTHER ? &other_texts[term] : &term_texts[kind][term]);
+}
+
+imk_term_display imk_channel_angle_white(const imk_log_column *column, double dt)
+{
+    imk_term_display display = display_of(column, &white_texts[imk_channel_kind_of(column)]);
+    display.unit.scale /= sqrt(dt);
+    display.si_scale /= sqrt(dt);
+    return display;
+}
+
+imk_term_display imk_identified_term(const imk_log_column *column, const imk_identification *result,
+                                     imk_noise_term term)
+{
+    return term == IMK_NOISE_QUANTIZATION && result->term[term].present &&
+                   !imk_identification_counted(result)
+               ? imk_channel_angle_white(column, result->dt)
+               : imk_channel_term(column, term);
 }

@@ -36,7 +36,7 @@ static imk_status describe_errors(imk_navigate_log *n, imk_zero_velocity_setting
     const imk_matrix3 c_bn = imk_matrix3_transpose(c_nb);
     const imk_vector3 up = {{0.0, 0.0, -imk_normal_gravity(place.latitude, place.height)}};
     imk_status status = imk_zero_velocity_describe(
-        o->model, imk_matrix3_apply(c_bn, imk_earth_rate(place.latitude)),
+        o->model, n->record.dt, imk_matrix3_apply(c_bn, imk_earth_rate(place.latitude)),
         imk_matrix3_apply(c_bn, up), s, error);
     if (status == IMK_OK && aligned)
         status = imk_zero_velocity_aligned(&n->alignment, n->method, !o->heading_given,

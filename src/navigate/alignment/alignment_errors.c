@@ -102,6 +102,9 @@ static void add_process(axis_errors *errors, const imki_process *p, double durat
         if (w > 0.0 && p->q > 0.0)
             errors->white += 2.0 * variance / (p->q * w);
         break;
+    case IMKI_PROCESS_READING:
+        errors->quantum += variance;
+        break;
     }
 }
 

@@ -63,10 +63,24 @@ static void add_resonance(imki_drift_plan *plan, const imki_process *p,
                          folded ? folded_density(resonance, dt) : p->size * p->size);
 }
 
-static void add_process(imki_drift_plan *plan, const imki_process *p,
-                        const imki_drift_column *column, double dt)
+/* Independent errors of the readings of the integral. */
+static void add_reading(imki_drift_plan *plan, int sensor, int axis, double size, double dt)
 {
-    if (p->kind == IMKI_PROCESS_SINE) {
+    const imki_drift_driver white = imki_driver_white();
+    const imki_drift_column column = imki_drift_column_of(IMKI_COLUMN_ROUNDING, sensor, axis, 0);
+    imki_drift_add_noise(plan, IMKI_ELEMENT_ROUNDING, &column, &white, size * size * dt);
+    if (plan->element)
+        plan->element[plan->element_count - 1].state[0] = size;
+}
+
+static void add_process(imki_drift_plan *plan, const imki_process *p, int sensor, int axis,
+                        double dt)
+{
+    const imki_drift_column one = imki_drift_column_of(IMKI_COLUMN_ONE, sensor, axis, 0);
+    const imki_drift_column *column = &one;
+    if (p->kind == IMKI_PROCESS_READING) {
+        add_reading(plan, sensor, axis, p->size, dt);
+    } else if (p->kind == IMKI_PROCESS_SINE) {
         add_sine(plan, p, column, dt);
     } else if (p->kind == IMKI_PROCESS_RESONANCE) {
         add_resonance(plan, p, column, dt);
@@ -96,11 +110,9 @@ static void add_element(imki_drift_plan *plan, const imki_noise_term *term, cons
     imki_drift_add_source(plan, kinds[sensor], term->path[sensor],
                           term->count ? suffix[instance] : "", term->text[sensor]);
     for (place.axis = 0; place.axis < 3; place.axis++) {
-        const imki_drift_column column =
-            imki_drift_column_of(IMKI_COLUMN_ONE, sensor, place.axis, 0);
         const size_t count = strength[place.axis] != 0.0 ? term->processes(place, dt, process) : 0;
         for (size_t i = 0; i < count; i++)
-            add_process(plan, &process[i], &column, dt);
+            add_process(plan, &process[i], sensor, place.axis, dt);
     }
 }
 
@@ -114,16 +126,9 @@ static void add_quantization(imki_drift_plan *plan, const imk_triad *triad, int 
         return;
     imki_drift_add_source(plan, kinds[sensor], "noise.quantization", "",
                           sensor == IMK_GYRO ? "gyro quantization" : "accelerometer quantization");
-    const imki_drift_driver white = imki_driver_white();
-    for (int axis = 0; axis < 3; axis++) {
-        const imki_drift_column column =
-            imki_drift_column_of(IMKI_COLUMN_ROUNDING, sensor, axis, 0);
-        if (q[axis] == 0.0)
-            continue;
-        imki_drift_add_noise(plan, IMKI_ELEMENT_ROUNDING, &column, &white, q[axis] * q[axis] * dt);
-        if (plan->element)
-            plan->element[plan->element_count - 1].state[0] = q[axis];
-    }
+    for (int axis = 0; axis < 3; axis++)
+        if (q[axis] != 0.0)
+            add_reading(plan, sensor, axis, q[axis], dt);
 }
 
 /* Rounding to a step is white noise of a twelfth of its square where noise of half a step at least

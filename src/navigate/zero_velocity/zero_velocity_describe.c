@@ -91,14 +91,14 @@ static void add_gauss_markov(const imk_triad *triad, imk_triad_errors *errors)
     }
 }
 
-static void describe(const imk_triad *triad, imk_vector3 input, imk_vector3 force,
+static void describe(const imk_triad *triad, double dt, imk_vector3 input, imk_vector3 force,
                      imk_triad_errors *errors)
 {
     memset(errors, 0, sizeof *errors);
     imk_bias_part *constant = &errors->part[errors->part_count++];
     for (int i = 0; i < 3; i++) {
         errors->white[i] = triad->noise.white.value[i];
-        errors->quantization[i] = triad->noise.quantization.value[i];
+        errors->quantization[i] = imk_noise_reading(&triad->noise, i, dt);
         constant->sigma[i] = sqrt(constant_variance(triad, i, input, force));
         constant->walk[i] = triad->noise.random_walk.value[i];
     }
@@ -106,7 +106,8 @@ static void describe(const imk_triad *triad, imk_vector3 input, imk_vector3 forc
     add_gauss_markov(triad, errors);
 }
 
-imk_status imk_zero_velocity_describe(const imk_model *model, imk_vector3 rate, imk_vector3 force,
+imk_status imk_zero_velocity_describe(const imk_model *model, double dt, imk_vector3 rate,
+                                      imk_vector3 force,
                                       imk_zero_velocity_settings *settings, imk_error *error)
 {
     const imk_triad *triad[2] = {&model->gyro, &model->accel};
@@ -115,8 +116,8 @@ imk_status imk_zero_velocity_describe(const imk_model *model, imk_vector3 rate, 
         if (!triad[sensor]->present || triad[sensor]->axis_count != 3)
             return imk_error_set(error, IMK_ERROR_UNSUPPORTED, name[sensor], "",
                                  "a triad of three axes");
-    describe(&model->gyro, rate, force, &settings->gyro);
-    describe(&model->accel, force, force, &settings->accel);
+    describe(&model->gyro, dt, rate, force, &settings->gyro);
+    describe(&model->accel, dt, force, force, &settings->accel);
     return IMK_OK;
 }
 

@@ -390,7 +390,7 @@ static void check_self_alignment(const char *name, imk_alignment_method method)
             s.initial_sigma[i] = i < 6 ? 1e-4 : 0.0;
         s.hold_height = true;
         const imk_vector3 up = {{0.0, 0.0, -9.8}};
-        CHECK_OK(imk_zero_velocity_describe(&model, (imk_vector3){{0}}, up, &s, &error));
+        CHECK_OK(imk_zero_velocity_describe(&model, 0.01, (imk_vector3){{0}}, up, &s, &error));
         CHECK_OK(imk_zero_velocity_aligned(&result, settings.method, true, aligned, &s));
         imk_zero_velocity *filter = start_filter(&m, &s, &result.state);
         u.time = 0.0;
@@ -499,7 +499,7 @@ static void test_flicker(void **state)
     imk_zero_velocity_settings s;
     imk_zero_velocity_default(&s);
     CHECK_OK(
-        imk_zero_velocity_describe(&model, (imk_vector3){{0}}, (imk_vector3){{0}}, &s, &error));
+        imk_zero_velocity_describe(&model, 0.01, (imk_vector3){{0}}, (imk_vector3){{0}}, &s, &error));
     assert_int_equal(s.gyro.part_count, 5);
     double worst = 0.0;
     for (double f = 1e-4; f < 1.001e-2; f *= 1.1) {
@@ -529,7 +529,7 @@ static void test_description(void **state)
     imk_zero_velocity_settings s;
     imk_zero_velocity_default(&s);
     const imk_vector3 force = {{0.0, 0.0, -10.0}};
-    CHECK_OK(imk_zero_velocity_describe(&model, (imk_vector3){{0}}, force, &s, &error));
+    CHECK_OK(imk_zero_velocity_describe(&model, 0.01, (imk_vector3){{0}}, force, &s, &error));
     CHECK_RELATIVE(s.gyro.part[0].sigma[0], 5e-6, 1e-14);
     CHECK_RELATIVE(s.gyro.part[0].sigma[1], 3e-6, 1e-14);
     CHECK_RELATIVE(s.gyro.part[0].sigma[2], 5e-6, 1e-14);
@@ -540,14 +540,14 @@ static void test_description(void **state)
     set3(model.gyro.noise.gauss_markov[0].sigma.value, 1e-6);
     set3(model.gyro.noise.gauss_markov[0].correlation_time.value, 100.0);
     model.gyro.noise.gauss_markov[0].correlation_time.value[1] = 50.0;
-    CHECK_OK(imk_zero_velocity_describe(&model, (imk_vector3){{0}}, force, &s, &error));
+    CHECK_OK(imk_zero_velocity_describe(&model, 0.01, (imk_vector3){{0}}, force, &s, &error));
     assert_int_equal(s.gyro.part_count, 3);
     CHECK_CLOSE(s.gyro.part[1].sigma[1], 0.0, 0.0);
     CHECK_CLOSE(s.gyro.part[1].sigma[2], 1e-6, 0.0);
     CHECK_CLOSE(s.gyro.part[2].sigma[1], 1e-6, 0.0);
     CHECK_CLOSE(s.gyro.part[2].sigma[2], 0.0, 0.0);
     model.gyro.axis_count = 4;
-    CHECK_STATUS(imk_zero_velocity_describe(&model, (imk_vector3){{0}}, force, &s, &error),
+    CHECK_STATUS(imk_zero_velocity_describe(&model, 0.01, (imk_vector3){{0}}, force, &s, &error),
                  IMK_ERROR_UNSUPPORTED);
 }
 

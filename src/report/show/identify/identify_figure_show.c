@@ -49,14 +49,9 @@ static void show_model(const imk_identify_log *log, size_t channel, int term, do
 static void show_deviations(const imk_identify_shown *shown, size_t channel,
                             imk_figure_builder *figure)
 {
-    static const char *const names[2][IMK_NOISE_TERMS] = {
-        {"quantization", "angle random walk", "bias instability", "rate random walk", "rate ramp"},
-        {"quantization", "velocity random walk", "bias instability", "acceleration random walk",
-         "acceleration ramp"}};
     static const int colors[IMK_NOISE_TERMS] = {3, 1, 2, 5, 4};
     const imk_identify_log *log = shown->log;
     const imk_log_column *column = imk_even_record_column(&log->record, channel);
-    const bool accel = imk_channel_kind_of(column) == IMK_CHANNEL_ACCEL;
     const imk_allan_curve *curve = &log->curve[channel];
     const imk_allan_curve *twin = shown->twin ? &shown->twin[channel] : NULL;
     const imk_unit unit = imk_channel_readable_unit(column, curve->deviation[curve->count / 2]);
@@ -79,7 +74,9 @@ static void show_deviations(const imk_identify_shown *shown, size_t channel,
     }
     for (int term = 0; term < IMK_NOISE_TERMS; term++)
         if (log->result[channel].term[term].present) {
-            imki_begin_curve(figure, names[accel][term], IMK_CURVE_DASHES, colors[term]);
+            const imk_term_display display =
+                imk_identified_term(column, &log->result[channel], (imk_noise_term)term);
+            imki_begin_curve(figure, display.name, IMK_CURVE_DASHES, colors[term]);
             show_model(log, channel, term, unit.scale, figure);
         }
     imki_begin_curve(figure, "model", IMK_CURVE_LINE, MODEL_COLOR);

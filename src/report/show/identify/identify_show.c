@@ -23,13 +23,13 @@ static void estimate_data(imk_result *result, const char *key, const imk_estimat
 static void terms_data(const imk_identify_log *log, size_t channel, imk_result *result)
 {
     const imk_log_column *column = imk_even_record_column(&log->record, channel);
-    const bool other = imk_channel_kind_of(column) == IMK_CHANNEL_OTHER;
+    const imk_identification *r = &log->result[channel];
     const int terms = log->origin == IMK_IDENTIFY_RECORDS ? IMK_NOISE_RAMP : IMK_NOISE_TERMS;
     imk_result_object(result, "terms");
     for (int term = 0; term < terms; term++) {
-        const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
-        estimate_data(result, imk_result_key(result, "%s", display.key),
-                      &log->result[channel].term[term], other ? display.unit.scale : 1, display.si);
+        const imk_term_display display = imk_identified_term(column, r, (imk_noise_term)term);
+        estimate_data(result, imk_result_key(result, "%s", display.key), &r->term[term],
+                      display.si_scale, display.si);
     }
     imk_result_end(result);
 }

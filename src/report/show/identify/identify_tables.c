@@ -22,6 +22,32 @@ static void estimate_rows(imk_table *table, const char *name, imk_unit unit,
                       estimates[k] ? imki_interval(estimates[k], unit.scale).text : "");
 }
 
+/* What was counted, and what was white noise of the integral. */
+static void reading_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
+                         size_t members)
+{
+    const imk_log_column *column = imk_even_record_column(&log->record, member[0]);
+    const imk_estimate *rows[2][IMK_LOG_COLUMNS_MAX] = {{NULL}};
+    bool any[2] = {false, false};
+    for (size_t k = 0; k < members; k++) {
+        const imk_identification *r = &log->result[member[k]];
+        const imk_estimate *e = &r->term[IMK_NOISE_QUANTIZATION];
+        const bool white = e->present && !imk_identification_counted(r);
+        rows[white][k] = e;
+        any[white] = any[white] || e->present;
+    }
+    const imk_term_display display[2] = {imk_channel_term(column, IMK_NOISE_QUANTIZATION),
+                                         imk_channel_angle_white(column, log->record.dt)};
+    for (int white = 0; white < 2; white++) {
+        if (white ? !any[1] : any[1] && !any[0])
+            continue;
+        for (size_t k = 0; k < members && !any[!white]; k++)
+            rows[white][k] = rows[white][k] ? rows[white][k] : rows[!white][k];
+        estimate_rows(table, display[white].name, display[white].unit, rows[white], members,
+                      log->settings.confidence);
+    }
+}
+
 static void term_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
                       size_t members)
 {
@@ -29,7 +55,8 @@ static void term_rows(imk_table *table, const imk_identify_log *log, const size_
     const imk_unit unit = imk_channel_term(column, IMK_NOISE_BIAS_INSTABILITY).unit;
     const imk_estimate *estimates[IMK_LOG_COLUMNS_MAX], *times[IMK_LOG_COLUMNS_MAX];
     const double confidence = log->settings.confidence;
-    for (int term = 0; term < IMK_NOISE_TERMS; term++) {
+    reading_rows(table, log, member, members);
+    for (int term = IMK_NOISE_WHITE; term < IMK_NOISE_TERMS; term++) {
         const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
         for (size_t k = 0; k < members; k++)
             estimates[k] = &log->result[member[k]].term[term];
@@ -105,13 +132,16 @@ void imki_identify_tables(const imk_identify_log *log, imk_result *result)
 }
 
 /* The true value of a term in a model, SI; NaN when the model has no such axis. */
-static double true_value(const imk_model *truth, const imk_log_column *column, imk_noise_term term)
+static double true_value(const imk_model *truth, const imk_log_column *column, imk_noise_term term,
+                         double dt)
 {
     const imk_triad *triad =
         column->quantity == IMK_QUANTITY_ANGULAR_RATE ? &truth->gyro : &truth->accel;
     if (!triad->present || column->axis < 0 || column->axis >= triad->axis_count)
         return (double)NAN;
-    const imk_axes *axes[IMK_NOISE_TERMS] = {&triad->noise.quantization, &triad->noise.white,
+    if (term == IMK_NOISE_QUANTIZATION)
+        return imk_noise_reading(&triad->noise, column->axis, dt);
+    const imk_axes *axes[IMK_NOISE_TERMS] = {NULL, &triad->noise.white,
                                              &triad->noise.bias_instability,
                                              &triad->noise.random_walk, &triad->noise.ramp};
     return axes[term]->value[column->axis];
@@ -122,12 +152,13 @@ static void truth_row(imk_table *table, const imk_identify_shown *shown, size_t 
 {
     const imk_log_column *column = imk_even_record_column(&shown->log->record, channel);
     const imk_estimate *e = &shown->log->result[channel].term[term];
-    const double truth = true_value(shown->truth, column, term);
+    const double truth = true_value(shown->truth, column, term, shown->log->record.dt);
     const bool ramp = term == IMK_NOISE_RAMP;
     if (isnan(truth) || (truth == 0 && !e->present) ||
         (ramp && shown->log->origin == IMK_IDENTIFY_RECORDS))
         return;
-    const imk_term_display display = imk_channel_term(column, term);
+    const imk_term_display display =
+        imk_identified_term(column, &shown->log->result[channel], term);
     const double scale = display.unit.scale, size = ramp ? truth : fabs(truth);
     const bool inside = size >= e->lower && size <= e->upper;
     imk_table_row(table, "%s\t%s\t%.4g\t%s\t%s\t%s\t%s", column->name, display.name, truth / scale,

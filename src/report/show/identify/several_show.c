@@ -123,7 +123,9 @@ static void channel_table(const imk_identify_several *s, size_t channel,
     imk_table_row(table, "%s", column_of(s, channel)->name);
     for (int term = 0; term < IMK_NOISE_RAMP; term++) {
         const imk_term_display display =
-            imk_channel_term(column_of(s, channel), (imk_noise_term)term);
+            s->runs ? imk_identified_term(column_of(s, channel), &s->joint.result[channel],
+                                          (imk_noise_term)term)
+                    : imk_channel_term(column_of(s, channel), (imk_noise_term)term);
         if (s->runs ? !s->joint.result[channel].term[term].present && term != IMK_NOISE_WHITE
                     : !s->term[channel][term].compared)
             continue;
@@ -178,7 +180,9 @@ static void run_data(const imk_identify_several *s, size_t channel,
     if (imki_begin_object(result, "largest_difference", a->record >= 0 && a->term >= 0)) {
         imk_result_text(result, "log", records[a->record].label);
         imk_result_text(result, "term",
-                        imk_channel_term(column_of(s, channel), (imk_noise_term)a->term).key);
+                        imk_identified_term(column_of(s, channel), &s->joint.result[channel],
+                                            (imk_noise_term)a->term)
+                            .key);
         imk_result_number(result, "sigmas", a->sigmas);
         imk_result_end(result);
     }

@@ -24,7 +24,8 @@ static void tell_run(imk_verdict *v, const imk_identify_several *s, size_t chann
                          column->name, chance.text);
         return;
     }
-    const imk_term_display display = imk_channel_term(column, (imk_noise_term)a->term);
+    const imk_term_display display =
+        imk_identified_term(column, &s->joint.result[channel], (imk_noise_term)a->term);
     const double scale = display.unit.scale;
     imki_verdict_add(
         v, IMK_FINDING_WARNING, "runs_differ",

@@ -75,17 +75,28 @@ static bool find_saturated(const imk_identify_log *log, size_t channel, imki_tex
 }
 
 /* Tones have many largest values; resonances and filters may. */
+/* Where counting behind a dither is all there is, two readings differ by a step at most, and the
+ * values end there by themselves. */
+static bool ends_by_counting(const imk_identification *r, double end)
+{
+    const imk_estimate *q = &r->term[IMK_NOISE_QUANTIZATION];
+    const double step = sqrt(12) * q->value;
+    return q->present && r->dt > 0 && fabs(fabs(end - r->mean) * r->dt - step) < 0.1 * step;
+}
+
 static bool find_ends(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_screen *s = &log->screen[channel];
     const imk_identification *r = &log->result[channel];
     const imk_unit unit = imki_concern_unit(log, channel, s->end_high - s->end_low);
-    if (s->ends_low)
+    const bool low = s->ends_low && !ends_by_counting(r, s->end_low);
+    const bool high = s->ends_high && !ends_by_counting(r, s->end_high);
+    if (low)
         imki_text_add(detail, "above %.4g %s", s->end_low / unit.scale, unit.text);
-    if (s->ends_high)
-        imki_text_add(detail, "%sbelow %.4g %s", s->ends_low ? " and " : "",
-                      s->end_high / unit.scale, unit.text);
-    return (s->ends_low || s->ends_high) && s->saturated.count == 0 && r->sinusoid_count == 0;
+    if (high)
+        imki_text_add(detail, "%sbelow %.4g %s", low ? " and " : "", s->end_high / unit.scale,
+                      unit.text);
+    return (low || high) && s->saturated.count == 0 && r->sinusoid_count == 0;
 }
 
 /* Held samples have a cycle, too, and are told by the rows. */

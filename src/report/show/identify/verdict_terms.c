@@ -102,16 +102,17 @@ static bool find_ambiguous(const imk_identify_log *log, size_t channel, imki_tex
     return true;
 }
 
-/* Rounding an angle makes white noise of it only where the noise of one sample moves it by about
- * half a step. */
 static bool find_angle_noise(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_identification *r = &log->result[channel];
-    const double step = sqrt(12) * r->term[IMK_NOISE_QUANTIZATION].value;
-    const double moved = r->term[IMK_NOISE_WHITE].value * sqrt(log->record.dt);
-    const bool rounded = fabs(r->resolution * log->record.dt - step) < 0.2 * step;
-    (void)detail;
-    return step > 2.1 * moved && !rounded;
+    const imk_estimate *q = &r->term[IMK_NOISE_QUANTIZATION];
+    const imk_unit unit =
+        imk_channel_term(imk_even_record_column(&log->record, channel), IMK_NOISE_QUANTIZATION)
+            .unit;
+    if (!q->present || imk_identification_counted(r))
+        return false;
+    imki_text_add(detail, "1 sigma of a reading %.3g %s", q->value / unit.scale, unit.text);
+    return true;
 }
 
 static bool find_undetermined(const imk_identify_log *log, size_t channel, imki_text *detail)
@@ -250,8 +251,9 @@ static const imki_concern concerns[] = {
     {IMK_VERDICT_RESONANCE, find_resonance, 0, IMK_FINDING_NOTE, "resonance",
      "a resonance of the structure or the sensor is modelled separately", NULL},
     {0, find_angle_noise, 0, IMK_FINDING_NOTE, "angle_noise",
-     "the quantization is white noise of the angle, and the output is not rounded to such steps; "
-     "simulate rounds, so a twin has less noise at the shortest averaging times",
+     "the readings of the integral have white errors that lie on no grid: they are taken as white "
+     "noise of the integral, whose readings scatter less at a lower rate; counts behind a dither "
+     "look the same at one rate, but scatter alike at every rate: a log at another rate tells",
      NULL},
     {0, find_ambiguous, 0, IMK_FINDING_NOTE, "ambiguous",
      "the record cannot tell which of these terms it holds; the intervals hold for either", NULL},

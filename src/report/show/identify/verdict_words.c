@@ -98,7 +98,7 @@ static const struct words {
     {"outliers", NULL, "Outliers, left out: %s."},
     {"tails", NULL, "Samples far off, kept as noise: %s."},
     {"gaussian", NULL, "White noise with heavier tails than Gaussian: %s."},
-    {"angle_noise", NULL, "White noise of the angle, not rounding: %s."},
+    {"angle_noise", NULL, "White noise of the integral, not rounding: %s."},
     {"ambiguous", NULL, "Terms that the record cannot tell apart: %s."},
     {"walk_or_drift", "a walk or ramp of %s may be jumps or a drift",
      "A walk or ramp that may be jumps or a drift: %s."},
