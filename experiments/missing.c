@@ -98,7 +98,7 @@ static void make_samples(worker *w)
     }
     if (w->scene->quantization > 0) {
         imk_quantization_state quantization;
-        imk_quantization_start(&quantization, w->scene->quantization, 0, STEP, random, stream + 63);
+        imk_quantization_start(&quantization, w->scene->quantization, STEP, random, stream + 63);
         imk_quantization_apply(&quantization, SAMPLES, x);
     }
 }

@@ -95,7 +95,7 @@ typedef struct imk_identification {
     double longest;         /**< longest tau compared with the record: a ninth of its length [s] */
     double resolution;      /**< smallest step between values [unit]; 0 when none is detected */
     double log_likelihood;
-    double dt; /**< sample interval [s]; 0: not known, as of a table of Allan deviations */
+    double dt;          /**< sample interval [s]; 0: not known, as of a table of Allan deviations */
     double rounding;    /**< white noise of rounding to these steps after the filter [unit of N]; 0
                            when none is detected: then the white noise holds it */
     double plateau;     /**< white noise together with what resonances have at frequency 0, if some
@@ -155,16 +155,17 @@ IMK_API imk_level_sum imk_level_loss(size_t count, const imk_identification *con
 IMK_API double imk_identification_allan_variance(const imk_identification *result, double dt,
                                                  size_t m, int term);
 
-/** Are the errors of the readings of the integral, IMK_NOISE_QUANTIZATION, those of counting? True if
- *  the samples lie on a grid whose step is sqrt(12) Q/dt, within a fifth or the interval of Q, or if
- *  the interval of samples is not known. Else they are white noise of the integral, A = Q sqrt(dt):
- *  one record at one rate cannot tell it from counts whose grid does not show, such as those of a
- *  dithered ring laser. */
+/** Are the errors of the readings of the integral, IMK_NOISE_QUANTIZATION, those of counting? True
+ * if the samples lie on a grid whose step is sqrt(12) Q/dt, within a fifth or the interval of Q, or
+ * if the interval of samples is not known. Else they are white noise of the integral, A = Q
+ * sqrt(dt): one record at one rate cannot tell it from counts whose grid does not show, such as
+ * those of a dithered ring laser. */
 IMK_API bool imk_identification_counted(const imk_identification *result);
 
 /** Put a channel's result into one axis of a model: its noise terms, its output filter and the
- *  evidence for them. What is not counted becomes noise.angle_white. Absent terms become zero in the model, and their bounds go into the evidence.
- *  Where the output is rounded after its filter, its step becomes the model's resolution.
+ *  evidence for them. What is not counted becomes noise.angle_white. Absent terms become zero in
+ * the model, and their bounds go into the evidence. Where the output is rounded after its filter,
+ * its step becomes the model's resolution.
  *  @param sensor  IMK_GYRO or IMK_ACCEL
  *  @param axis    0 … IMK_AXES_MAX - 1 */
 IMK_API void imk_identification_store(const imk_identification *result, imk_model *model,

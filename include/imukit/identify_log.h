@@ -95,10 +95,10 @@ IMK_API imk_status imk_identify_log_twin(const imk_identify_log *log, const imk_
 
 /** Names of a noise term of a channel, and the units of its strength. */
 typedef struct imk_term_display {
-    char key[40];  /**< as in the model file */
-    char name[40]; /**< in words: "angle random walk" */
-    imk_unit unit; /**< unit that a person reads */
-    char si[40];   /**< unit of the SI value */
+    char key[40];    /**< as in the model file */
+    char name[40];   /**< in words: "angle random walk" */
+    imk_unit unit;   /**< unit that a person reads */
+    char si[40];     /**< unit of the SI value */
     double si_scale; /**< a strength divided by it is in that unit */
 } imk_term_display;
 /** Names and units of a noise term for the kind of sensor of the column. */

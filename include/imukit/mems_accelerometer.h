@@ -133,8 +133,8 @@ IMK_API imk_status imk_mems_accelerometer_validate(const imk_mems_accelerometer 
  *  finite gain of imk_mems_quantizer instead, a scale factor error -1/(1 + gain).
  *
  *  The mean of a loop's force over a sample differs from the input by the change of the mass's
- *  momentum. Without an output filter this is quantization noise, with Q = the rms velocity of the
- *  mass; an output filter removes most of it, and then none is stated.
+ *  momentum. Without an output filter this is reading noise of the rms velocity of the mass; an
+ *  output filter removes most of it, and then none is stated.
  *
  *  s and v are the relative temperature coefficients of springs and voltages, we^2 the softening.
  *  `bandwidth` and `damping` are those of the second-order filter with the -3 dB point and the

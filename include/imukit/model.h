@@ -103,11 +103,9 @@ typedef struct imk_noise {
     imk_axes random_walk;      /**< K: rate or acceleration random walk [unit/sqrt(s)] */
     imk_axes ramp;             /**< R: rate or acceleration ramp [unit/s] */
     imk_axes angle_white;      /**< A: white noise of the integrated output [unit s/sqrt(Hz)] */
+    imk_axes reading_noise;    /**< 1 sigma of each reading of the integrated output, whatever the
+                                  rate, such as counts behind a dither have [unit s] */
     imk_axes quantization;     /**< Q = LSB/sqrt(12) of the integrated output [unit s] */
-    /** 1 sigma, at the readings, of a motion that the counter of the integral sees and the output
-     *  does not show, such as the dither of a ring laser [unit s]; from half an LSB on, the errors
-     *  of counting are independent from reading to reading whatever the input is. */
-    imk_axes quantization_dither;
     int gauss_markov_count, sinusoid_count, resonance_count;
     struct imk_gauss_markov_term {
         imk_axes sigma;            /**< [unit] */
@@ -237,8 +235,8 @@ IMK_API const imk_triad *imk_model_triad(const imk_model *model, int sensor);
 IMK_API imk_triad *imk_model_triad_to_set(imk_model *model, int sensor);
 
 /** 1 sigma of the error of one reading of the integral of an axis, means over dt [s] being read
- *  [unit s]: sqrt(Q^2 + A^2/dt). The Allan variance of these errors is three times its square over
- *  tau^2. */
+ *  [unit s]: the root of Q^2 + reading_noise^2 + A^2/dt. The Allan variance of these errors is
+ * three times its square over tau^2. */
 IMK_API double imk_noise_reading(const imk_noise *noise, int axis, double dt);
 
 /** A perfect unit: orthogonal triads of gyros and accelerometers without any error, and no

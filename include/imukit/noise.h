@@ -41,7 +41,8 @@ IMK_BEGIN_C
     TERM(GAUSS_MARKOV, gauss_markov, 4)                                                            \
     TERM(SINUSOID, sinusoid, 5)                                                                    \
     TERM(RESONANCE, resonance, 6)                                                                  \
-    TERM(ANGLE_WHITE, angle_white, 14)
+    TERM(ANGLE_WHITE, angle_white, 14)                                                             \
+    TERM(READING_NOISE, reading_noise, 15)
 
 /** Term numbers of the random streams: imk_stream(run, term, instance, axis). Fixed for ever. */
 enum {
@@ -327,7 +328,8 @@ typedef struct imk_angle_white_state {
     imk_noise_block block;
 } imk_angle_white_state;
 /** Start white noise of the integral: each reading of the integral has an independent error of 1
- *  sigma A/sqrt(dt), and a sample is the difference of two over dt. */
+ *  sigma A/sqrt(dt), and a sample is the difference of two over dt. Readings with an error of 1
+ *  sigma r whatever the rate are those of A = r sqrt(dt). */
 IMK_API imk_status imk_angle_white_start(imk_angle_white_state *state, double density, double dt,
                                          imk_random random, uint64_t stream);
 /** Add the next `count` samples. */
@@ -349,17 +351,10 @@ typedef struct imk_quantization_state {
     double residual;     /**< of the integral at the last segment's end; |residual| <= lsb/2 */
     double sum, counted; /**< since that end: integral without the residual, and steps given out */
     uint64_t next;       /**< next sample */
-    double dither;       /**< 1 sigma of the dither [unit s] */
-    double moved;        /**< by the dither, at the last reading [unit s] */
-    imk_random random;
-    uint64_t stream;
 } imk_quantization_state;
-/** Start quantization; the first residual is drawn uniformly from the stream.
- *  @param dither  1 sigma, at the readings, of a motion that is counted with the input and taken out
- *                 of the output, independent from reading to reading [unit s]; 0: none. From half an
- *                 LSB on the errors of counting are white to 1.5 % of an LSB, whatever the input */
-IMK_API imk_status imk_quantization_start(imk_quantization_state *state, double q, double dither,
-                                          double dt, imk_random random, uint64_t stream);
+/** Start quantization; the first residual is drawn uniformly from the stream. */
+IMK_API imk_status imk_quantization_start(imk_quantization_state *state, double q, double dt,
+                                          imk_random random, uint64_t stream);
 /** Replace the rates in `out` by quantised increments divided by dt; the residual is carried over,
  *  so no rate is ever lost. Apply it last, to the sum of all other terms. */
 IMK_API void imk_quantization_apply(imk_quantization_state *state, size_t count, double *out);

@@ -86,11 +86,10 @@ IMK_API double imk_pendulous_servo_rectification(const imk_pendulous_servo *desi
  *  2 k T b, readout, and pickoff against the hinge. */
 IMK_API double imk_pendulous_servo_noise(const imk_pendulous_servo *design);
 
-/** Q of the reading [m/s]: standard deviation of (J phi' + b phi)/P, the momentum of the pendulum
+/** Reading noise [m/s]: standard deviation of (J phi' + b phi)/P, the momentum of the pendulum
  *  caused by the pickoff's noise and the Brownian torque. The mean torque of a sample contains the
- *  difference of this momentum between its ends, which acts as quantization noise. A model has
- *  either this or a resolution; `reduce` states the resolution if there is one. */
-IMK_API double imk_pendulous_servo_quantization(const imk_pendulous_servo *design);
+ *  difference of this momentum between its ends. */
+IMK_API double imk_pendulous_servo_reading_noise(const imk_pendulous_servo *design);
 
 /** The error model; the design must be valid. It states the fixed bias and its effects, scale
  *  factor, K2 of the torquer, the lever arm J/P, noise, bandwidth, range and resolution. Without

@@ -38,7 +38,8 @@ imk_triad *imk_model_triad_to_set(imk_model *model, int sensor)
 double imk_noise_reading(const imk_noise *noise, int axis, double dt)
 {
     const double q = noise->quantization.value[axis], a = noise->angle_white.value[axis];
-    return a == 0.0 ? q : sqrt(q * q + a * a / dt);
+    const double r = noise->reading_noise.value[axis];
+    return a == 0.0 && r == 0.0 ? q : sqrt(q * q + r * r + a * a / dt);
 }
 
 /* ---- comparison -------------------------------------------------------------------------------

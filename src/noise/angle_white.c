@@ -112,3 +112,47 @@ const imki_noise_term imki_angle_white_term = {
     .generator = &generator,
     .processes = processes,
     .mean_variance = mean_variance};
+
+/* ---- errors of readings whatever the rate ---------------------------------------------------- */
+
+static double reading(imki_term_place place)
+{
+    return place.triad->noise.reading_noise.value[place.axis];
+}
+
+static imk_status start_reading(void *state, imki_term_place place, double dt, imk_random random,
+                                uint64_t stream)
+{
+    return imk_angle_white_start(state, reading(place) * sqrt(dt), dt, random, stream);
+}
+
+static const imki_generator reading_generator = {.state_size = sizeof(imk_angle_white_state),
+                                                 .start = start_reading,
+                                                 .field = "noise.reading_noise",
+                                                 .refused = reading,
+                                                 .normals = IMK_NOISE_BLOCK,
+                                                 .draws = draws,
+                                                 .together = 1,
+                                                 .blocks = blocks};
+
+static size_t reading_processes(imki_term_place place, double dt, imki_process *process)
+{
+    (void)dt;
+    return imki_one_process(process, IMKI_PROCESS_READING, reading(place));
+}
+
+static double reading_variance(imki_term_place place, double dt, double time)
+{
+    const double ratio = reading(place) / time;
+    (void)dt;
+    return 2.0 * ratio * ratio;
+}
+
+const imki_noise_term imki_reading_noise_term = {
+    .path = {"noise.reading_noise", "noise.reading_noise"},
+    .text = {"gyro reading noise", "accelerometer reading noise"},
+    .stream = IMK_TERM_READING_NOISE,
+    .strength = reading,
+    .generator = &reading_generator,
+    .processes = reading_processes,
+    .mean_variance = reading_variance};

@@ -8,11 +8,6 @@
  * residual is white, uniform, of variance Q^2, and enters the rate by its difference:
  * sigma_A^2 = 3 Q^2/tau^2 exactly, S(f) = 4 (Q^2/dt) sin^2(pi f dt)   [IEEE952]
  *
- * With dither the integral is moved by d[k] before it is rounded, and the output holds what was
- * counted less d[k]: the residual is then uniform and independent of the input, from reading to
- * reading, where d spreads over steps; its characteristic function is that of d at 1/lsb, which for
- * a normal d of half a step is e^(-2 pi^2/4) = 0.7 % [WIDROW2008].
- *
  * At the end of each segment of 32 samples the residual is folded back to +-lsb/2, which keeps the
  * sums short: no digits are lost however long the record. */
 #include "generator_internal.h"
@@ -34,12 +29,10 @@ double imk_quantization_sampled_spectrum(double q, double dt, double frequency)
     return amplitude * amplitude / dt;
 }
 
-imk_status imk_quantization_start(imk_quantization_state *state, double q, double dither,
-                                  double dt, imk_random random, uint64_t stream)
+imk_status imk_quantization_start(imk_quantization_state *state, double q, double dt,
+                                  imk_random random, uint64_t stream)
 {
     imk_status status = imki_check_noise(q, dt);
-    if (status == IMK_OK)
-        status = imki_check_noise(dither, dt);
     if (status != IMK_OK)
         return status;
     uint32_t word;
@@ -47,48 +40,14 @@ imk_status imk_quantization_start(imk_quantization_state *state, double q, doubl
     double lsb = q * sqrt(12.0);
     /* Half a unit keeps the start symmetric: (word + 1/2)/2^32 - 1/2. */
     double start = ((double)word + 0.5) * 0x1p-32 - 0.5;
-    *state = (imk_quantization_state){.lsb = lsb,
-                                      .dt = dt,
-                                      .residual = start * lsb,
-                                      .dither = dither,
-                                      .random = random,
-                                      .stream = stream};
-    if (dither > 0.0)
-        imk_random_normals(random, stream, IMKI_START_NORMAL, 1, &state->moved);
-    state->moved *= dither;
+    *state = (imk_quantization_state){.lsb = lsb, .dt = dt, .residual = start * lsb};
     return IMK_OK;
-}
-
-/* Samples of one piece, whose dither is drawn in one call. */
-enum { PIECE = 64 };
-
-/* What is counted moves with the dither, and the output without it. */
-static void apply_dithered(imk_quantization_state *state, size_t count, double *out)
-{
-    double normal[PIECE];
-    const double per_step = 1.0 / state->lsb, per_second = 1.0 / state->dt;
-    imk_random_normals(state->random, state->stream, state->next, count, normal);
-    for (size_t i = 0; i < count; i++) {
-        const double moved = state->dither * normal[i];
-        const double integral = state->residual + out[i] * state->dt + (moved - state->moved);
-        const double counted = imki_round(integral * per_step) * state->lsb;
-        out[i] = (counted - (moved - state->moved)) * per_second;
-        state->residual = integral - counted;
-        state->moved = moved;
-    }
-    state->next += count;
 }
 
 void imk_quantization_apply(imk_quantization_state *state, size_t count, double *out)
 {
     if (!(state->lsb > 0.0))
         return;
-    for (; state->dither > 0.0 && count > 0;) {
-        const size_t now = count < PIECE ? count : PIECE;
-        apply_dithered(state, now, out);
-        out += now;
-        count -= now;
-    }
     double per_step = 1.0 / state->lsb, rate_step = state->lsb / state->dt;
     for (size_t i = 0; i < count; i++) {
         state->sum += out[i] * state->dt;
@@ -108,13 +67,6 @@ void imki_quantization_block(imk_quantization_state *state, imk_kernel kernel, d
 {
     if (!(state->lsb > 0.0))
         return;
-    if (state->dither > 0.0) {
-        IMKI_ALIGNED double samples[IMK_NOISE_BLOCK];
-        imki_to_time_order(kernel, block, samples);
-        imk_quantization_apply(state, IMK_NOISE_BLOCK, samples);
-        imki_to_segment_order(kernel, samples, block);
-        return;
-    }
     imki_quantize(kernel, state->lsb, state->dt, &state->residual, block);
     state->next += IMK_NOISE_BLOCK;
 }

@@ -208,6 +208,10 @@ static const struct message {
                           "identify; leave it out with " BY_NAME ", or check the log"},
     {"too_few_values", "column {name} has {0} finite values in {1} rows: at least 256 are needed "
                        "to identify noise; leave it out with " BY_NAME ", or check the log"},
+    {"too_few_changes",
+     "column {name} stays the same in most of its {1} rows: not a quarter of them has a value that "
+     "differs from the row before, as where an angle or a velocity is counted in steps that are "
+     "large for a row, or a slower sensor is repeated; log at a lower rate or with finer steps"},
     {"too_few_to_identify",
      "{1} rows are too few to identify noise: at least 256 are needed; record minutes to hours"},
     {"moved",

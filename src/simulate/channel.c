@@ -84,10 +84,9 @@ static imk_status start_terms(imki_channel *channel, imki_axis axis, double dt, 
         return status;
     const uint64_t stream = imk_stream(run, IMK_TERM_QUANTIZATION, 0, axis.stream_axis);
     const double q = axis.triad->noise.quantization.value[axis.axis];
-    const double dither = axis.triad->noise.quantization_dither.value[axis.axis];
     channel->ramp = axis.triad->noise.ramp.value[axis.axis] * dt;
     *found = (misfit){"noise.quantization", q};
-    return imk_quantization_start(&channel->quantization, q, dither, dt, random, stream);
+    return imk_quantization_start(&channel->quantization, q, dt, random, stream);
 }
 
 static imk_status start_band_limit(imki_channel *channel, imki_axis axis, double part,

@@ -25,6 +25,7 @@ typedef union any_state {
     imk_random_walk_state random_walk;
     imk_gauss_markov_state gauss_markov;
     imk_sinusoid_state sinusoid;
+    imk_angle_white_state angle_white;
 } any_state;
 
 typedef struct generator {
@@ -99,6 +100,10 @@ GENERATOR(folded, arma, imk_resonance_start(&state->arma, folded, dt, random, st
 GENERATOR(tone, sinusoid, imk_sinusoid_start(&state->sinusoid, tone, dt, random, stream),
           imk_sinusoid_sampled_allan_variance(tone, dt, n), 0.0)
 
+GENERATOR(angle, angle_white, imk_angle_white_start(&state->angle_white, 0.4, dt, random, stream),
+          imk_angle_white_sampled_allan_variance(0.4, dt, n),
+          imk_angle_white_sampled_spectrum(0.4, dt, f))
+
 #define ENTRY(name, variance)                                                                      \
     {                                                                                              \
 #name, name##_start, name##_add, name##_avar, name##_spectrum, variance                    \
@@ -129,6 +134,7 @@ static const generator generators[] = {
     ENTRY(ringing, 0.64),
     ENTRY(folded, 0.64),
     ENTRY(tone, 0.0),
+    ENTRY(angle, 2.0 * 0.16 / (0.02 * 0.02 * 0.02)), /* two readings of A^2/dt, over dt^2 */
 };
 enum { GENERATORS = sizeof generators / sizeof *generators };
 
@@ -535,7 +541,7 @@ static void test_quantization_residual(void **unused)
     const double rate[] = {9.8e-9, -3.1e-5, 0.7, 9.80665, -150.0}; /* 0.002 deg/h first */
     for (size_t r = 0; r < 5; r++) {
         imk_quantization_state state;
-        CHECK_OK(imk_quantization_start(&state, q, 0, interval, imk_random_seeded(8), r));
+        CHECK_OK(imk_quantization_start(&state, q, interval, imk_random_seeded(8), r));
         long double in = state.residual, out = 0.0L;
         assert_true(fabs(state.residual) <= lsb / 2.0);
         for (int block = 0; block < 200; block++) {
@@ -570,7 +576,7 @@ static void test_quantization_allan_variance(void **unused)
             imk_random random = imk_random_seeded(seeds[s]);
             CHECK_OK(imk_white_start(&white, 10.0 * sqrt(interval) / interval, interval, random,
                                      imk_stream(run, 1, 0, 0)));
-            CHECK_OK(imk_quantization_start(&state, q, 0, interval, random, imk_stream(run, 7, 0, 0)));
+            CHECK_OK(imk_quantization_start(&state, q, interval, random, imk_stream(run, 7, 0, 0)));
             memset(samples, 0, sizeof samples);
             imk_white_add(&white, LENGTH, samples);
             memcpy(samples + LENGTH, samples, LENGTH * sizeof *samples);
@@ -601,7 +607,7 @@ static void test_quantization_start(void **unused)
     (void)unused;
     for (uint32_t run = 0; run < STREAMS; run++) {
         imk_quantization_state state;
-        CHECK_OK(imk_quantization_start(&state, 2.0, 0, 1.0, imk_random_seeded(1),
+        CHECK_OK(imk_quantization_start(&state, 2.0, 1.0, imk_random_seeded(1),
                                         imk_stream(run, 7, 0, 0)));
         values[0][run] = state.residual;
         values[1][run] = state.residual * state.residual;

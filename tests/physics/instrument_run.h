@@ -104,7 +104,7 @@ static inline void check_chain(const imk_instrument *instrument, const void *des
                                const imk_physics_settings *settings, const imk_exposure *exposure,
                                size_t settle, size_t count)
 {
-    static const char *const names[] = {"quantization", "white", "bias instability", "random walk",
+    static const char *const names[] = {"reading", "white", "bias instability", "random walk",
                                         "ramp"};
     count = check_quick() ? count / 4 : count;
     imk_model *model = malloc(sizeof *model);
@@ -124,7 +124,7 @@ static inline void check_chain(const imk_instrument *instrument, const void *des
         imk_identify_channel(&identify, count, samples, &found, workspace, workspace_size, &error));
     imk_instrument_reduce(instrument, design, model);
     const imk_noise *noise = instrument->sensor == 0 ? &model->gyro.noise : &model->accel.noise;
-    const double stated[] = {noise->quantization.value[0], noise->white.value[0],
+    const double stated[] = {imk_noise_reading(noise, 0, identify.dt), noise->white.value[0],
                              noise->bias_instability.value[0], noise->random_walk.value[0],
                              noise->ramp.value[0]};
     for (int i = 0; i < IMK_NOISE_TERMS; i++) {

@@ -366,7 +366,7 @@ static void integral_term_removes_the_dead_zone(void **state)
         mean += samples[i] / COUNT;
     for (int i = 0; i < COUNT; i++)
         variance += (samples[i] - mean) * (samples[i] - mean) / COUNT;
-    CHECK_RELATIVE(sqrt(variance / 2.0) / settings.rate, model->accel.noise.quantization.value[0],
+    CHECK_RELATIVE(sqrt(variance / 2.0) / settings.rate, model->accel.noise.reading_noise.value[0],
                    0.15);
     free(run_state);
     free(model);

@@ -644,7 +644,7 @@ static void default_design(void **state)
     const imk_noise *noise = &model->gyro.noise;
     CHECK_CLOSE(noise->white.value[0] / degree * 60.0, 0.0035, 1e-6);
     CHECK_CLOSE(0.6643 * noise->bias_instability.value[0] / degree_per_hour, 0.0035, 1e-9);
-    CHECK_RELATIVE(noise->quantization.value[0], imk_ring_laser_count_angle(&d) / sqrt(12.0),
+    CHECK_RELATIVE(noise->reading_noise.value[0], imk_ring_laser_count_angle(&d) / sqrt(12.0),
                    1e-14);
     CHECK_CLOSE(model->gyro.dead_band.value[0], 0.0, 0.0);
     CHECK_CLOSE(model->gyro.scale_factor.temperature.order, 0, 0.0);

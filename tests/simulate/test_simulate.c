@@ -433,7 +433,7 @@ static void test_quantization(void **state)
     simulate(&model, &simulation, &quantised);
     for (uint8_t axis = 0; axis < 3; axis++) {
         imk_quantization_state quantization;
-        CHECK_OK(imk_quantization_start(&quantization, 1e-4, 0, 0.01, imk_random_seeded(0),
+        CHECK_OK(imk_quantization_start(&quantization, 1e-4, 0.01, imk_random_seeded(0),
                                         imk_stream(0, IMK_TERM_QUANTIZATION, 0, 8 + axis)));
         imk_quantization_apply(&quantization, ROWS, plain.value[3 + axis]);
         assert_memory_equal(plain.value[3 + axis], quantised.value[3 + axis],

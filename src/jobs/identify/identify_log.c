@@ -151,6 +151,8 @@ static imk_status refuse_without_model(imk_identify_log *log, size_t channel, im
     return imki_fail(&log->findings, error, IMK_ERROR_NO_CONVERGENCE, code, name, 3, numbers);
 }
 
+static const double fewest_rows = 256; /* imk_identify_channel() */
+
 imk_status imki_identify_explain(imk_identify_log *log, size_t channel, imk_status status,
                                  const imk_error *why, imk_error *error)
 {
@@ -165,8 +167,10 @@ imk_status imki_identify_explain(imk_identify_log *log, size_t channel, imk_stat
     const double finite = kept ? (double)imk_even_record_finite(record, channel) : rows;
     if (status == IMK_ERROR_TOO_SHORT)
         return imki_fail(&log->findings, error, status,
-                         finite < rows ? "too_few_values" : "too_few_to_identify", name,
-                         IMKI_NUMBERS(finite, rows));
+                         finite >= fewest_rows ? "too_few_changes"
+                         : finite < rows       ? "too_few_values"
+                                               : "too_few_to_identify",
+                         name, IMKI_NUMBERS(finite, rows));
     const imk_identify_moves moves = imk_identify_log_moves(log);
     if (status == IMK_ERROR_NO_CONVERGENCE && moves.moved)
         return imki_fail(&log->findings, error, status, "moved", name,

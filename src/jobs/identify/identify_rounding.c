@@ -112,7 +112,8 @@ static void round_triad(imk_triad *triad, imk_evidence *evidence, imk_quantity q
     round_axes(&triad->damping, "1");
     round_axes(&triad->resolution, unit);
     for (int i = 0; i < evidence->interval_count; i++)
-        round_interval(&evidence->interval[i], unit_of_key(evidence->interval[i].key, terms, &white, unit));
+        round_interval(&evidence->interval[i],
+                       unit_of_key(evidence->interval[i].key, terms, &white, unit));
 }
 
 void imki_round_model(imk_model *model)

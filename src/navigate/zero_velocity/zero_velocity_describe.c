@@ -107,8 +107,8 @@ static void describe(const imk_triad *triad, double dt, imk_vector3 input, imk_v
 }
 
 imk_status imk_zero_velocity_describe(const imk_model *model, double dt, imk_vector3 rate,
-                                      imk_vector3 force,
-                                      imk_zero_velocity_settings *settings, imk_error *error)
+                                      imk_vector3 force, imk_zero_velocity_settings *settings,
+                                      imk_error *error)
 {
     const imk_triad *triad[2] = {&model->gyro, &model->accel};
     static const char *const name[2] = {"gyro", "accel"};

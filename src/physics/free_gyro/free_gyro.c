@@ -31,7 +31,7 @@ imk_free_gyro imk_free_gyro_default(void)
         .torque_instability = 5e-7,
         .torque_noise = 3e-7,
         .pickoff_resolution = 20.0 * IMKI_DEGREE / 3600.0,
-        .pickoff_noise = 5.0 * IMKI_DEGREE / 3600.0,
+        .pickoff_noise = 12.0 * IMKI_DEGREE / 3600.0,
         .start_nutation = 15.0 * IMKI_DEGREE / 3600.0,
     };
 }

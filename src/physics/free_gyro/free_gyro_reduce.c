@@ -122,6 +122,6 @@ void imki_free_gyro_reduce(const imk_free_gyro *design, imk_triad *gyro)
     gyro->noise.density = IMK_DENSITY_TWO_SIDED;
     gyro->noise.white.value[0] = per_h * design->torque_noise;
     gyro->noise.bias_instability.value[0] = per_h * design->torque_instability;
-    gyro->noise.quantization.value[0] =
-        sqrt(step * step / 12.0 + design->pickoff_noise * design->pickoff_noise);
+    gyro->noise.quantization.value[0] = step / sqrt(12.0);
+    gyro->noise.reading_noise.value[0] = design->pickoff_noise;
 }

@@ -138,16 +138,15 @@ static double loop_velocity(const imk_mems_accelerometer *d, const imki_mems_poi
 }
 
 /* What the mean of a loop's force over a sample and the input differ by is the change of the
- * mass's momentum: quantization noise, unless a filter takes it away. */
+ * mass's momentum: noise of the readings of velocity, unless a filter takes it away. */
 static void set_loop_noise(const imk_mems_accelerometer *d, const imki_mems_point *p,
                            imk_triad *triad)
 {
     const bool clocked = d->loop == IMK_MEMS_SIGMA_DELTA;
     if (clocked && imki_mems_locked(d))
         triad->dead_band.value[0] = imk_mems_accelerometer_limit_cycle(d).dead_zone;
-    /* a model has either that or steps of the output */
-    if (!(d->output_bandwidth > 0.0) && !(d->resolution > 0.0))
-        triad->noise.quantization.value[0] =
+    if (!(d->output_bandwidth > 0.0))
+        triad->noise.reading_noise.value[0] =
             clocked ? imk_mems_accelerometer_quantizer(d).velocity : loop_velocity(d, p);
 }
 

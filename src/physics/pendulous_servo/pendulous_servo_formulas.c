@@ -83,7 +83,7 @@ double imk_pendulous_servo_noise(const imk_pendulous_servo *d)
 
 /* The loop without its output: (phi, phi', z), or (phi, phi') where there is no integral action,
  * under its noise. A step of many time constants gives the stationary covariance. */
-double imk_pendulous_servo_quantization(const imk_pendulous_servo *d)
+double imk_pendulous_servo_reading_noise(const imk_pendulous_servo *d)
 {
     const double j = d->inertia, k = imki_servo_stiffness(d), b = d->damping;
     const int n = d->integral > 0.0 ? 3 : 2;
@@ -148,8 +148,7 @@ void imki_pendulous_servo_reduce(const imk_pendulous_servo *d, imk_triad *triad)
     triad->noise.white.value[0] = imk_pendulous_servo_noise(d);
     if (d->readout_step > 0.0)
         triad->resolution.value[0] = d->readout_step / scale;
-    else
-        triad->noise.quantization.value[0] = imk_pendulous_servo_quantization(d);
+    triad->noise.reading_noise.value[0] = imk_pendulous_servo_reading_noise(d);
     triad->bandwidth.value[0] = imk_pendulous_servo_bandwidth(d);
     triad->damping.value[0] =
         imki_model_damping(d->damping / (2.0 * sqrt(d->inertia * imki_servo_stiffness(d))));

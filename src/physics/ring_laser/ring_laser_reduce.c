@@ -168,7 +168,13 @@ void imki_ring_laser_reduce(const imk_ring_laser *design, imk_triad *triad)
     const double white = sqrt(lock * lock + quantum * quantum);
     triad->noise.white.value[0] = white;
     triad->noise.bias_instability.value[0] = design->null_shift.instability;
-    triad->noise.quantization.value[0] = imk_ring_laser_count_angle(design) / sqrt(12.0);
+    /* What the pickoff takes out of the counts has moved them: their errors are independent. Read
+     * at one point of a cycle, or without dither, they are rounded as they stand. */
+    const double count = imk_ring_laser_count_angle(design);
+    const bool moved = design->readout.stripping == IMK_RING_LASER_PICKOFF &&
+                       imk_ring_laser_dither_angle(design) > count;
+    imk_axes *axes = moved ? &triad->noise.reading_noise : &triad->noise.quantization;
+    axes->value[0] = count / sqrt(12.0);
 
     /* A phase in a tilted washboard with noise: where the barrier 2 K b is below the temperature
      * K^2 N^2 it runs almost freely; at the limit its slope at zero is 1/I_0(1)^2 = 0.62

@@ -79,7 +79,7 @@ static void add_noise(const imk_shell_gyro *design, imk_triad *triad, double gai
         thermal * thermal * across + (felt ? pickoff * pickoff * decay * decay : 0.0);
     const double bandwidth = 2.0 * IMKI_PI * design->control.rebalance_bandwidth;
     triad->noise.white.value[0] = gain * sqrt(white);
-    triad->noise.quantization.value[0] =
+    triad->noise.reading_noise.value[0] =
         gain * pickoff * (held ? sqrt(0.5 * bandwidth) : sqrt(1.0 / imki_shell_update(design)));
     triad->noise.bias_instability.value[0] =
         gain * design->anisotropy.damping_instability / (2.0 * k);

@@ -142,6 +142,6 @@ void imki_suspended_rotor_reduce(const imk_suspended_rotor *design, imk_triad *g
     gyro->noise.density = IMK_DENSITY_TWO_SIDED;
     gyro->noise.white.value[0] = ball.per_h * across * design->torque_noise;
     gyro->noise.bias_instability.value[0] = ball.per_h * across * design->torque_instability;
-    gyro->noise.quantization.value[0] =
-        across * sqrt(step * step / 12.0 + design->readout_noise * design->readout_noise);
+    gyro->noise.quantization.value[0] = across * step / sqrt(12.0);
+    gyro->noise.reading_noise.value[0] = across * design->readout_noise;
 }

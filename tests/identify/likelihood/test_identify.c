@@ -65,7 +65,7 @@ static double *make_record(const truth *t, size_t n, double dt, uint64_t seed, u
     imk_ramp_add(t->ramp, dt, 0, n, x);
     if (t->quantization > 0) {
         imk_quantization_state state;
-        assert_int_equal(imk_quantization_start(&state, t->quantization, 0, dt, random, stream + 6),
+        assert_int_equal(imk_quantization_start(&state, t->quantization, dt, random, stream + 6),
                          IMK_OK);
         imk_quantization_apply(&state, n, x);
     }

@@ -57,7 +57,7 @@ static double *make_record(const truth *t, size_t n, uint64_t seed)
     }
     if (t->quantization > 0) {
         imk_quantization_state state;
-        CHECK_OK(imk_quantization_start(&state, t->quantization, 0, dt, random, 6));
+        CHECK_OK(imk_quantization_start(&state, t->quantization, dt, random, 6));
         imk_quantization_apply(&state, n, x);
     }
     for (size_t i = 0; i < n; i++)

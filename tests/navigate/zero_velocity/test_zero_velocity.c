@@ -498,8 +498,8 @@ static void test_flicker(void **state)
     set3(model.gyro.noise.bias_instability.value, b);
     imk_zero_velocity_settings s;
     imk_zero_velocity_default(&s);
-    CHECK_OK(
-        imk_zero_velocity_describe(&model, 0.01, (imk_vector3){{0}}, (imk_vector3){{0}}, &s, &error));
+    CHECK_OK(imk_zero_velocity_describe(&model, 0.01, (imk_vector3){{0}}, (imk_vector3){{0}}, &s,
+                                        &error));
     assert_int_equal(s.gyro.part_count, 5);
     double worst = 0.0;
     for (double f = 1e-4; f < 1.001e-2; f *= 1.1) {

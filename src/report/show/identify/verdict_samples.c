@@ -75,8 +75,8 @@ static bool find_saturated(const imk_identify_log *log, size_t channel, imki_tex
 }
 
 /* Tones have many largest values; resonances and filters may. */
-/* Where counting behind a dither is all there is, two readings differ by a step at most, and the
- * values end there by themselves. */
+/* Where uniform errors of counting behind a dither are all there is, two readings differ by a step
+ * at most, and the values end there by themselves. */
 static bool ends_by_counting(const imk_identification *r, double end)
 {
     const imk_estimate *q = &r->term[IMK_NOISE_QUANTIZATION];
