@@ -148,11 +148,11 @@ static double true_value(const imk_identify_shown *shown, size_t channel, imk_no
         r->filter.bandwidth > 0
             ? (imk_identify_seen){triad->noise.white.value[column->axis],
                                   imk_noise_reading(&triad->noise, column->axis, dt)}
-            : imk_identify_seen_of(triad, column->axis, dt, r->term[IMK_NOISE_QUANTIZATION].present);
-    const double value[IMK_NOISE_TERMS] = {seen.reading, seen.white,
-                                           triad->noise.bias_instability.value[column->axis],
-                                           triad->noise.random_walk.value[column->axis],
-                                           triad->noise.ramp.value[column->axis]};
+            : imk_identify_seen_of(triad, column->axis, dt, shown->log->duration,
+                                   r->term[IMK_NOISE_QUANTIZATION].present);
+    const double value[IMK_NOISE_TERMS] = {
+        seen.reading, seen.white, triad->noise.bias_instability.value[column->axis],
+        triad->noise.random_walk.value[column->axis], triad->noise.ramp.value[column->axis]};
     return value[term];
 }
 
