@@ -126,7 +126,7 @@ typedef struct imk_derived {
     const char *si;       /**< SI unit of the value: "Hz" */
     const char *unit;     /**< unit in which it is shown */
     const char *equation; /**< in the letters of the instrument's header: "f_n = H/(2 pi …)" */
-    const char *source;   /**< key in docs/references.md: "ARNOLD1961" */
+    const char *source;   /**< citation of docs/references.md: "[ARNOLD1961]" */
     /** Value in SI for a valid design; NaN or infinite: this design has none. */
     double (*value)(const void *design);
     const char *absent; /**< why a design has none, "no loop holds the float"; NULL: all have one */

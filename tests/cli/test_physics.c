@@ -315,7 +315,7 @@ static void test_derived(void **state)
                        100 * 3.14159265358979 / 299.792458, 1e-12);
         assert_string_equal(json_string_value(json_object_get(phase, "symbol")), "K");
         assert_string_equal(json_string_value(json_object_get(phase, "unit")), "rad/(rad/s)");
-        assert_string_equal(json_string_value(json_object_get(phase, "source")), "VALI1976");
+        assert_string_equal(json_string_value(json_object_get(phase, "source")), "[VALI1976]");
         assert_true(json_is_null(json_object_get(phase, "absent")));
         json_t *gain = derived_of(document, "effective loop gain");
         assert_true(json_is_null(json_object_get(gain, "value")));
