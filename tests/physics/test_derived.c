@@ -118,6 +118,7 @@ static void rate_integrating_gyro(void **state)
         {"input angle at the stop", deg},
         {"drift per torque", 25.0},
         {"elastic restraint drift", 0.0},
+        {"time constant of the elastic restraint", (double)NAN},
         {"largest rate of the torquer", 0.0215 / 0.04},
         {"pulse weight", (double)NAN},
         {"torque per float angle of the loop", 2.0 * 2.5 * 2.0 * PI * 4.0 * 0.04},
@@ -136,6 +137,7 @@ static void rate_integrating_gyro(void **state)
     const due_row pulses[] = {
         {"pulse weight", 0.0215 / (0.04 * 6400.0)},
         {"elastic restraint drift", 1e-3 / 0.04},
+        {"time constant of the elastic restraint", 0.04 / 1e-3},
         {"torque per float angle of the loop", (double)NAN},
         {"bandwidth (-3 dB)", (double)NAN},
     };
@@ -389,18 +391,18 @@ static void mems_accelerometer(void **state)
     (void)state;
     const double m = 1.2e-6, w0 = 2.0 * PI * 1800.0, k = m * w0 * w0, eps = 8.8541878128e-12;
     const double gap = 2e-6, ea = eps * 1.6e-6, soft = 2.0 * ea / (gap * gap * gap);
-    const double per_force = m / (k - soft);
     const due_row rows[] = {
         {"stiffness of the springs", k},
-        {"spring softening by the plates", soft},
+        {"spring softening, mass in the middle", soft},
         {"softening, share of the stiffness", soft / k},
-        {"natural frequency, softened", sqrt((k - soft) / m) / (2.0 * PI)},
+        /* where w0^2 (z - 10 nm) is the plates' pull, by bisection in Python: z = 10.2362 nm */
+        {"natural frequency, softened", 1779.10891089},
         {"damping coefficient", m * w0 / 0.7},
         {"damping ratio", 1.0 / 1.4},
         {"decay time constant", 1.4 / w0},
-        {"displacement per specific force", per_force},
-        {"capacitance of a plate at rest", ea / gap},
-        {"change of capacitance per specific force", 2.0 * ea / (gap * gap) * per_force},
+        {"displacement per specific force", 8.00267524952e-9},
+        {"capacitance of a plate, mass in the middle", ea / gap},
+        {"change of capacitance per specific force", 5.66902065688e-14},
         {"pull-in voltage", sqrt(k * gap * gap * gap / (2.0 * ea))},
         {"voltage, share of pull-in", 1.0 / sqrt(k * gap * gap * gap / (2.0 * ea))},
         /* w0^2 (z - 10 nm) less the plates' pull at the stop z = 1 um, in Python */
@@ -430,8 +432,10 @@ static void mems_accelerometer(void **state)
     d = imk_mems_accelerometer_default();
     d.plates = IMK_MEMS_SINGLE;
     const due_row single[] = {
-        {"spring softening by the plates", 0.5 * soft},
-        {"change of capacitance per specific force", ea / (gap * gap) * m / (k - 0.5 * soft)},
+        {"spring softening, mass in the middle", 0.5 * soft},
+        /* as above, z = 21.7926 nm */
+        {"natural frequency, softened", 1789.23757721},
+        {"change of capacitance per specific force", 2.86437124044e-14},
         {"pull-in voltage", sqrt(8.0 * k * gap * gap * gap / (27.0 * ea))},
     };
     CHECK_ROWS(imk_mems_accelerometer_instrument, &d, single);

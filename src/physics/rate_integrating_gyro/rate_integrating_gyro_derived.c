@@ -18,6 +18,7 @@ VALUE(gain, imk_rate_integrating_gyro_gain(d))
 VALUE(time_constant, imk_rate_integrating_gyro_time_constant(d))
 VALUE(input_stop, d->stop / imk_rate_integrating_gyro_gain(d))
 VALUE(restraint, d->stiffness / momentum(d))
+VALUE_IF(leak, d->stiffness > 0.0, d->damping / d->stiffness)
 VALUE_IF(range, d->rebalance != IMK_REBALANCE_OPEN, imk_rate_integrating_gyro_range(d))
 VALUE_IF(pulse, d->rebalance == IMK_REBALANCE_TERNARY || d->rebalance == IMK_REBALANCE_BINARY,
          imk_rate_integrating_gyro_pulse(d))
@@ -43,6 +44,8 @@ const imk_derived imki_rate_integrating_gyro_derived[] = {
      per_torque, NULL},
     {"elastic restraint drift", "D_k", "rad/s/rad", "deg/h/mrad", "D_k = k/H", "[LAWRENCE1998]",
      restraint, NULL},
+    {"time constant of the elastic restraint", "tau_k", "s", "s", "tau_k = C/k", "[LAWRENCE1998]",
+     leak, "the flex leads have no stiffness (float.stiffness)"},
     {"largest rate of the torquer", "w_m", "rad/s", "deg/s", "w_m = M_t/H", "[LAWRENCE1998]", range,
      "no torquer holds the float (rebalance)"},
     {"pulse weight", "a_p", "rad", "arcsec", "a_p = M_t/(H f_p)", "[LAWRENCE1998]", pulse,
