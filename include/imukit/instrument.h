@@ -49,6 +49,11 @@ typedef enum imk_level {
     IMK_LEVEL_SLOW = 1  /**< a map or envelope that leaves the fast part out */
 } imk_level;
 
+/** Internal steps of a run, see imk_physics_settings.duration. A step takes 10 to 300 ns. */
+#define IMK_RUN_STEPS_FREE 3e7
+#define IMK_RUN_STEPS_PER_SECOND 1e7
+#define IMK_RUN_STEPS_MAX 1e12
+
 /** How to run an instrument. Start from imk_physics_default(), then change fields. */
 typedef struct imk_physics_settings {
     uint32_t cookie;
@@ -57,6 +62,11 @@ typedef struct imk_physics_settings {
     double step; /**< internal step [s], shortened to a whole fraction of 1/rate; 0 (default): the
                     longest with the instrument's stated accuracy. A step that would give wrong
                     results is refused */
+    double duration; /**< length of the run that is to come [s]; 0 (default): not known. A run of so
+                        many internal steps that it would hardly end is refused by
+                        imk_instrument_init() (field "duration"): more than IMK_RUN_STEPS_FREE, and
+                        more than IMK_RUN_STEPS_PER_SECOND of the duration; or more than
+                        IMK_RUN_STEPS_MAX */
     bool noise;  /**< false: no random effects, including the constants of the run; default true */
     uint64_t seed;
     uint32_t run; /**< run number: each run is another random draw of the same instrument */
@@ -165,8 +175,10 @@ IMK_API const imk_instrument *imk_instrument_get(size_t index);
 /** Kind by name ("ring_laser", case, blanks, - and _ ignored); NULL when there is none. */
 IMK_API const imk_instrument *imk_instrument_find(const char *name);
 
-/** Check that a design belongs to this instrument, that every field is finite and in its range, and
- *  that the design is possible as a whole.
+/** Check that a design belongs to this instrument, that every field is finite and in its range, that
+ *  the design is possible as a whole, and that every number of its error model
+ *  (imk_instrument_reduce()) is finite. If one is not, error.field is the parameter that makes the
+ *  difference to the default design.
  *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */
 IMK_API imk_status imk_design_check(const imk_instrument *instrument, const void *design,
                                     imk_error *error);
@@ -176,7 +188,7 @@ IMK_API imk_status imk_design_check(const imk_instrument *instrument, const void
  *                an error
  *  @return errors of imk_design_check(); IMK_ERROR_RANGE for a step (field "step") or rate that
  *          would give wrong results; IMK_ERROR_UNSUPPORTED for a level that the instrument does not
- *          have */
+ *          have; IMK_ERROR_CONFLICT (field "duration") for a run of too many steps */
 IMK_API imk_status imk_instrument_init(const imk_instrument *instrument, const void *design,
                                        const imk_physics_settings *settings, void *state,
                                        imk_error *error);
