@@ -264,7 +264,8 @@ void imki_mems_observe(const void *state, double *signals)
 double imki_mems_step_length(const void *design, const imk_physics_settings *settings)
 {
     const imk_mems_accelerometer *d = design;
-    double step = 1.0 / (IMKI_MEMS_STEPS * imki_mems_fastest(d));
+    const double steps = d->voltage_rate != 0.0 ? IMKI_MEMS_RAMP_STEPS : IMKI_MEMS_STEPS;
+    double step = 1.0 / (steps * imki_mems_fastest(d));
     if (settings->level == IMK_LEVEL_SLOW)
         return 1.0 / settings->rate;
     if (d->loop == IMK_MEMS_SIGMA_DELTA && 1.0 / d->clock < step)
