@@ -123,8 +123,17 @@ typedef struct imk_view {
     double settle;              /**< time simulated before the figure begins [s] */
     /** Default input of the figure: rate [rad/s] or specific force [m/s^2] along x. */
     double input;
-    bool points; /**< drawn as separate points, because the signals jump */
+    double force; /**< default specific force along x of the figure of a gyro [m/s^2] */
+    bool points;  /**< drawn as separate points, because the signals jump */
 } imk_view;
+
+/** What happened in a run that its readings do not say by themselves. */
+typedef struct imk_instrument_event {
+    const char *code; /**< of the message: a finding of job.h */
+    const char *name; /**< a word of the message */
+    size_t count;     /**< numbers of the message */
+    double number[6];
+} imk_instrument_event;
 
 /* ---- the interface --------------------------------------------------------------------------- */
 
@@ -161,6 +170,8 @@ typedef struct imk_instrument {
     void (*step)(void *state, const imk_exposure *exposure, double *outputs);
     /** Get the present internal signals. */
     void (*observe)(const void *state, double *signals);
+    /** Get what happened since the start. NULL: nothing ever does. @return false: nothing did */
+    bool (*happened)(const void *state, imk_instrument_event *event);
     /** Called by imk_instrument_reduce() with a triad of one axis along x without errors, to fill
      *  in the errors. */
     void (*reduce)(const void *design, imk_triad *triad);

@@ -676,6 +676,10 @@ static const struct message {
     {"not_followed", "the output ends at {1u}, the input is {0u}"},
     {"physics:temperature",
      "{0.4g} degC is outside the temperature range of this design, {1.4g} to {2.4g} degC"},
+    {"physics:touched",
+     "the ball touched its stop at {name} after {0.5g} s{5?}, at {5.3g} m/s{?}, under {1.5g} m/s^2 "
+     "({2.5g} g): the suspension carries {3.5g} m/s^2 ({4.5g} g) along each axis; since then the "
+     "readings are those of a ball that drags on the stop or was slowed down by it"},
     /* grade_position.c */
     {"nothing_to_grade", "states no bias repeatability, no bias instability and no uncertainty of "
                          "the fixed bias: there is nothing to grade"},

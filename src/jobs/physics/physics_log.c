@@ -262,6 +262,16 @@ static imk_status take_sample(work *w, void *state, uint64_t k, imk_error *error
     return status;
 }
 
+/* What happened inside, that the outputs do not say. */
+static void tell_event(imk_physics_log *log, const void *state)
+{
+    const imk_instrument *instrument = log->settings.instrument;
+    imk_instrument_event event;
+    if (instrument->happened && instrument->happened(state, &event))
+        imki_find(&log->findings, IMK_FINDING_WARNING, event.code, event.name, event.count,
+                  event.number);
+}
+
 static imk_status pass(work *w, const imk_job *job, imki_arena *arena, imk_error *error)
 {
     const imk_instrument *instrument = w->log->settings.instrument;
@@ -280,6 +290,8 @@ static imk_status pass(work *w, const imk_job *job, imki_arena *arena, imk_error
         if (status == IMK_OK)
             status = imki_job_progress(job, w->stage, "samples", k + 1, samples, error);
     }
+    if (w->counts && status == IMK_OK)
+        tell_event(w->log, state);
     if (status == IMK_OK && w->outputs)
         status = flush(w->log, w->outputs, error);
     return status == IMK_OK && w->signals ? flush(w->log, w->signals, error) : status;

@@ -34,6 +34,8 @@ static imk_physics_input input_of(const imk_physics_log_settings *settings, cons
     if (!settings->view_input) {
         const bool gyro = settings->instrument->sensor == IMK_GYRO;
         (gyro ? input.exposure.angular_rate : input.exposure.specific_force)[0] = view->input;
+        if (gyro)
+            input.exposure.specific_force[0] = view->force;
     }
     return input;
 }
@@ -43,10 +45,11 @@ static imk_status refuse_signal(const imk_instrument *instrument, const char *na
 {
     char found[sizeof error->found], expected[sizeof error->expected];
     snprintf(found, sizeof found, "\"%.48s\" is not finite at %.4g s", name, time);
-    snprintf(expected, sizeof expected,
-             "bring the design nearer to the default one, which imukit physics %.40s --show prints, "
-             "or the input nearer to 0",
-             instrument->name);
+    snprintf(
+        expected, sizeof expected,
+        "bring the design nearer to the default one, which imukit physics %.40s --show prints, "
+        "or the input nearer to 0",
+        instrument->name);
     return imk_error_set(error, IMK_ERROR_NOT_FINITE, "", found, expected);
 }
 
