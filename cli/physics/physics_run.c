@@ -16,7 +16,7 @@ static void suggest_level(const physics *p, imk_error *error)
     const double step = p->settings.instrument->step_length(p->settings.design, &slow);
     const size_t length = strlen(error->expected);
     if (p->options->level == 0 && p->options->step == 0 &&
-        p->settings.duration <= IMK_RUN_STEPS_FREE * step)
+        p->settings.duration <= IMK_PHYSICS_STEPS * step)
         snprintf(error->expected + length, sizeof error->expected - length,
                  ", or add --level slow");
 }

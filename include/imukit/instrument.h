@@ -49,11 +49,6 @@ typedef enum imk_level {
     IMK_LEVEL_SLOW = 1  /**< a map or envelope that leaves the fast part out */
 } imk_level;
 
-/** Internal steps of a run, see imk_physics_settings.duration. A step takes 10 to 300 ns. */
-#define IMK_RUN_STEPS_FREE 3e7
-#define IMK_RUN_STEPS_PER_SECOND 1e7
-#define IMK_RUN_STEPS_MAX 1e12
-
 /** How to run an instrument. Start from imk_physics_default(), then change fields. */
 typedef struct imk_physics_settings {
     uint32_t cookie;
@@ -62,11 +57,10 @@ typedef struct imk_physics_settings {
     double step; /**< internal step [s], shortened to a whole fraction of 1/rate; 0 (default): the
                     longest with the instrument's stated accuracy. A step that would give wrong
                     results is refused */
-    double duration; /**< length of the run that is to come [s]; 0 (default): not known. A run of so
-                        many internal steps that it would hardly end is refused by
-                        imk_instrument_init() (field "duration"): more than IMK_RUN_STEPS_FREE, and
-                        more than IMK_RUN_STEPS_PER_SECOND of the duration; or more than
-                        IMK_RUN_STEPS_MAX */
+    double duration;  /**< length of the run that is to come [s]; 0 (default): not known */
+    double steps_max; /**< a run of this duration that needs more internal steps is refused by
+                         imk_instrument_init() (field "duration"); 0 (default): any number may be.
+                         A step takes 10 to 400 ns */
     bool noise;  /**< false: no random effects, including the constants of the run; default true */
     uint64_t seed;
     uint32_t run; /**< run number: each run is another random draw of the same instrument */

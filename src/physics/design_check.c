@@ -174,6 +174,9 @@ static imk_status check_settings(const imk_physics_settings *settings, imk_error
     if (!(settings->duration >= 0.0 && isfinite(settings->duration)))
         return imki_refuse(error, IMK_ERROR_RANGE, "duration", settings->duration, 0.0,
                            "a time of 0 or more");
+    if (!(settings->steps_max >= 0.0))
+        return imki_refuse(error, IMK_ERROR_RANGE, "steps_max", settings->steps_max, 0.0,
+                           "a number of steps, or 0 for no limit");
     if (!(settings->step >= 0.0))
         return imki_refuse(error, IMK_ERROR_RANGE, "step", settings->step, 0.0,
                            "a step above 0, or 0 for the instrument's own");
@@ -207,11 +210,10 @@ static void append_number(char *text, size_t size, double number)
 static imk_status check_length(const imk_physics_settings *settings, double parts, double longest,
                                const char *reason, imk_error *error)
 {
-    const double duration = settings->duration, total = duration * settings->rate * parts;
-    const double allowed = fmin(IMK_RUN_STEPS_MAX,
-                                fmax(IMK_RUN_STEPS_FREE, IMK_RUN_STEPS_PER_SECOND * duration));
+    const double duration = settings->duration, allowed = settings->steps_max;
+    const double total = duration * settings->rate * parts;
     char found[sizeof error->found] = "the run of ", expected[sizeof error->expected] = "at most ";
-    if (parts <= 1.0 || total <= allowed)
+    if (parts <= 1.0 || allowed == 0.0 || total <= allowed)
         return IMK_OK;
     append_number(found, sizeof found, duration);
     imki_append_text(found, sizeof found, " s needs ");

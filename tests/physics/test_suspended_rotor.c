@@ -406,7 +406,7 @@ static void refusals(void **unused)
     d.clearance = d.gap;
     refused(&d, IMK_ERROR_CONFLICT, "suspension.clearance");
     d = good;
-    d.limit = 1e7; /* 2 limit/gap = 2e13/s^2 with a micrometre */
+    d.limit = 1e6; /* 2 limit/gap = 2e12/s^2 with a micrometre */
     d.gap = 1e-6;
     d.clearance = 5e-7;
     refused(&d, IMK_ERROR_CONFLICT, "suspension.gap");

@@ -279,6 +279,8 @@ static imk_status pass(work *w, const imk_job *job, imki_arena *arena, imk_error
     imk_physics_settings settings = w->log->settings.physics;
     settings.rate = w->rate;
     settings.duration = w->log->settings.duration;
+    settings.steps_max =
+        fmin(IMK_PHYSICS_STEPS * fmax(1.0, settings.duration), IMK_PHYSICS_STEPS_MAX);
     const size_t size = instrument->state_size;
     void *state = imki_arena_take(arena, size > 256 ? size : 256); /* a cache line begins there */
     if (!state)

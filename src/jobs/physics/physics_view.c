@@ -170,6 +170,7 @@ imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t
     imk_physics_settings physics = settings->physics;
     physics.rate = view->rate;
     physics.duration = view->settle + view->duration;
+    physics.steps_max = IMK_PHYSICS_STEPS;
     status = state && v->data
                  ? imk_instrument_init(instrument, settings->design, &physics, state, error)
                  : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
