@@ -175,6 +175,35 @@ static imk_status check_cavity(const imk_suspended_rotor *design, imk_error *err
     return IMK_OK;
 }
 
+/* Torques turn the axis slowly against the ball's spin: at most by this part of a radian in the
+ * time of a radian of the spin. */
+#define LARGEST_PART 1e-3
+/* As much white noise as a step of a microsecond has, and flicker and constants of a run at the
+ * ends of what is drawn. */
+#define NOISE_STEP 1e-6
+#define DRAWN 6.0
+
+static imk_status check_torques(const imk_suspended_rotor *design, imk_error *error)
+{
+    const imki_suspended_ball ball = imki_suspended_ball_of(design);
+    const double weight = ball.mass * design->limit;
+    double largest = 0.0;
+    for (int k = 0; k < 3; k++) /* gradient of G at the limit, and what else acts */
+        largest += fabs(ball.moment) * design->limit +
+                   3.0 * fabs(ball.second) * (ball.pull[k] + weight * weight * ball.per_pull) +
+                   6.0 * fabs(ball.third) * weight + fabs(design->torque[k]) +
+                   DRAWN * (design->torque_repeatability + design->torque_instability +
+                            design->torque_noise / sqrt(NOISE_STEP));
+    largest += 3.0 * fabs(design->torque_temperature) * IMKI_DESIGN_TEMPERATURE;
+    const double most = LARGEST_PART * imk_suspended_rotor_momentum(design) * design->spin_rate;
+    if (largest <= most)
+        return IMK_OK;
+    return imki_conflict(error, "spin.rate", design->spin_rate,
+                         design->spin_rate * sqrt(largest / most),
+                         "a faster or heavier ball, or smaller torques of shape, unbalance and "
+                         "errors: they must turn the axis slowly against the spin");
+}
+
 static imk_status check(const void *given, imk_error *error)
 {
     const imk_suspended_rotor *design = given;
@@ -192,7 +221,8 @@ static imk_status check(const void *given, imk_error *error)
         if (!(fabs(heights[i].value) <= most))
             return imki_conflict(error, heights[i].field, heights[i].value, most,
                                  "at most a thousandth of the ball's radius");
-    return check_cavity(design, error);
+    const imk_status status = check_cavity(design, error);
+    return status == IMK_OK ? check_torques(design, error) : status;
 }
 
 IMKI_DESIGN_FUNCTIONS(suspended_rotor);
