@@ -61,7 +61,7 @@ typedef struct imk_physics_settings {
     double steps_max; /**< a run of this duration that needs more internal steps is refused by
                          imk_instrument_init() (field "duration"); 0 (default): any number may be.
                          A step takes 10 to 400 ns */
-    bool noise;  /**< false: no random effects, including the constants of the run; default true */
+    bool noise; /**< false: no random effects, including the constants of the run; default true */
     uint64_t seed;
     uint32_t run; /**< run number: each run is another random draw of the same instrument */
     uint8_t axis; /**< number of one of several identical instruments, 0 … 255: each has its own
@@ -180,8 +180,8 @@ IMK_API const imk_instrument *imk_instrument_get(size_t index);
 /** Kind by name ("ring_laser", case, blanks, - and _ ignored); NULL when there is none. */
 IMK_API const imk_instrument *imk_instrument_find(const char *name);
 
-/** Check that a design belongs to this instrument, that every field is finite and in its range, that
- *  the design is possible as a whole, and that every number of its error model
+/** Check that a design belongs to this instrument, that every field is finite and in its range,
+ * that the design is possible as a whole, and that every number of its error model
  *  (imk_instrument_reduce()) is finite. If one is not, error.field is the parameter that makes the
  *  difference to the default design.
  *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */

@@ -36,12 +36,12 @@ typedef struct imk_suspended_rotor {
     double hollow;             /**< diameter of the hollow inside, 0: solid [m] */
     double density;            /**< [kg/m^3], > 0 */
     double inertia_difference; /**< (C - A)/A > 0, so that the ball spins about a stable axis [1] */
-    double unbalance;  /**< distance of the centre of mass from the centre, along the spin [m] */
-    double oblateness; /**< height of the second harmonic of the spinning shape, of P2 (negative:
-                            flattened at the poles) [m] */
-    double pear;       /**< height of the third harmonic, of P3 [m] */
-    double limit;      /**< largest specific force that the suspension can support along each axis
-                          [m/s^2], > 0 */
+    double unbalance;   /**< distance of the centre of mass from the centre, along the spin [m] */
+    double oblateness;  /**< height of the second harmonic of the spinning shape, of P2 (negative:
+                             flattened at the poles) [m] */
+    double pear;        /**< height of the third harmonic, of P3 [m] */
+    double limit;       /**< largest specific force that the suspension can support along each axis
+                           [m/s^2], > 0 */
     double gap;         /**< distance of the ball from the electrodes [m], > 0 */
     double clearance;   /**< distance of the ball from its stops [m], > 0, smaller than the gap */
     double bandwidth;   /**< natural frequency of the ball in the control of the field [Hz], > 0 */
@@ -117,7 +117,8 @@ IMK_API void imk_suspended_rotor_drift(const imk_suspended_rotor *design, const 
  *
  *     x'' = f - limit (gap/(gap + x))^2
  *
- * so that it falls as soon as f exceeds the limit, and cannot be lifted before f is much smaller. */
+ * so that it falls as soon as f exceeds the limit, and cannot be lifted before f is much smaller.
+ */
 
 /** Specific force along one axis beyond which the ball falls on its stop: the limit [m/s^2]. */
 IMK_API double imk_suspended_rotor_touch_down(const imk_suspended_rotor *design);
@@ -128,8 +129,8 @@ IMK_API double imk_suspended_rotor_lift_off(const imk_suspended_rotor *design);
  *  limit: v^2 = 2 clearance (f - limit gap/(gap + clearance)) [m/s].
  *  @param force  along one axis [m/s^2] */
 IMK_API double imk_suspended_rotor_impact(const imk_suspended_rotor *design, double force);
-/** Time in which a ball that lies on its stop, its spin axis across the force, runs down: H over the
- *  friction's torque, friction (diameter/2) m (f - lift off) [s]. Infinite without friction. */
+/** Time in which a ball that lies on its stop, its spin axis across the force, runs down: H over
+ * the friction's torque, friction (diameter/2) m (f - lift off) [s]. Infinite without friction. */
 IMK_API double imk_suspended_rotor_run_down(const imk_suspended_rotor *design, double force);
 
 /** The instrument; outputs and signals are in its tables. */

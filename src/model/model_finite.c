@@ -25,8 +25,9 @@ static bool polynomial_finite(const imk_temperature_polynomial *polynomial, size
         if (!all_finite(polynomial->coefficient[i].value, axis_count) ||
             !all_finite(polynomial->coefficient[i].sigma, axis_count))
             return false;
-    return polynomial->order == 0 || (isfinite(polynomial->reference) &&
-                                      isfinite(polynomial->minimum) && isfinite(polynomial->maximum));
+    return polynomial->order == 0 ||
+           (isfinite(polynomial->reference) && isfinite(polynomial->minimum) &&
+            isfinite(polynomial->maximum));
 }
 
 static bool list_finite(const imki_field *field, const imk_triad *triad)

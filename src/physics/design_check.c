@@ -66,7 +66,8 @@ static imk_status check_field(const imk_design_field *field, const void *design,
     return IMK_OK;
 }
 
-/* ---- the error model of a design -------------------------------------------------------------- */
+/* ---- the error model of a design --------------------------------------------------------------
+ */
 
 /* Designs of larger structures are not searched for the parameter at fault. */
 enum { DESIGN_SIZE_MAX = 1024 };

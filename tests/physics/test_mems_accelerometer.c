@@ -281,8 +281,8 @@ static void plates_pull_in(void **state)
     CHECK_RELATIVE(position_at(d, both, 1.02), d.stop * d.gap, 1e-12);
 }
 
-/* Voltage at which the mass of examples/instruments/pull_in.yaml is beyond the middle of the gap, on
- * a ramp that begins 2.5 % below pull-in and is sampled every 0.1 ms. */
+/* Voltage at which the mass of examples/instruments/pull_in.yaml is beyond the middle of the gap,
+ * on a ramp that begins 2.5 % below pull-in and is sampled every 0.1 ms. */
 static double pulled_in_at(double rate, double step)
 {
     imk_mems_accelerometer d = imk_mems_accelerometer_default();
