@@ -58,6 +58,9 @@ typedef struct imk_physics_settings {
                     longest with the instrument's stated accuracy. A step that would give wrong
                     results is refused */
     double duration;  /**< length of the run that is to come [s]; 0 (default): not known */
+    double turning;   /**< largest angular rate in it, the sum of the axes [rad/s]; 0 (default): not
+                         known. Of the instruments whose steps are divided when the case turns fast
+                         (free_gyro) it counts for steps_max */
     double steps_max; /**< a run of this duration that needs more internal steps is refused by
                          imk_instrument_init() (field "duration"); 0 (default): any number may be.
                          A step takes 10 to 400 ns */

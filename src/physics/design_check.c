@@ -66,8 +66,7 @@ static imk_status check_field(const imk_design_field *field, const void *design,
     return IMK_OK;
 }
 
-/* ---- the error model of a design --------------------------------------------------------------
- */
+/* ---- the error model of a design ------------------------------------------------------------- */
 
 /* Designs of larger structures are not searched for the parameter at fault. */
 enum { DESIGN_SIZE_MAX = 1024 };
@@ -175,6 +174,9 @@ static imk_status check_settings(const imk_physics_settings *settings, imk_error
     if (!(settings->duration >= 0.0 && isfinite(settings->duration)))
         return imki_refuse(error, IMK_ERROR_RANGE, "duration", settings->duration, 0.0,
                            "a time of 0 or more");
+    if (!(settings->turning >= 0.0 && isfinite(settings->turning)))
+        return imki_refuse(error, IMK_ERROR_RANGE, "turning", settings->turning, 0.0,
+                           "an angular rate of 0 or more");
     if (!(settings->steps_max >= 0.0))
         return imki_refuse(error, IMK_ERROR_RANGE, "steps_max", settings->steps_max, 0.0,
                            "a number of steps, or 0 for no limit");
@@ -229,7 +231,7 @@ static imk_status check_length(const imk_physics_settings *settings, double part
         imki_append_text(expected, sizeof expected, " (");
         imki_append_text(expected, sizeof expected, reason);
         imki_append_text(expected, sizeof expected,
-                         "): make the design slower, or the run shorter");
+                         "): make the design or the input slower, or the run shorter");
     }
     (void)imk_error_set(error, IMK_ERROR_CONFLICT, "duration", found, expected);
     return IMK_ERROR_CONFLICT;

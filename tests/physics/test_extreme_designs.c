@@ -194,12 +194,33 @@ static void too_many_steps_are_refused(void **unused)
     free(state);
 }
 
+/* 1e5 rad/s turn by 0.1 rad in a microsecond: 1e6 steps a second. */
+static void a_fast_turn_is_counted(void **unused)
+{
+    (void)unused;
+    const imk_free_gyro d = imk_free_gyro_default();
+    imk_physics_settings settings = imk_physics_default();
+    imk_error error = {0};
+    settings.duration = 10.0;
+    settings.steps_max = 1.001e7;
+    settings.turning = 1e5;
+    void *state = started(&imk_free_gyro_instrument, &d, &settings);
+    settings.turning = 1.1e5;
+    CHECK_STATUS(imk_instrument_init(&imk_free_gyro_instrument, &d, &settings, state, &error),
+                 IMK_ERROR_CONFLICT);
+    assert_non_null(strstr(error.expected, "at most 0.1 rad of the case's turn to a step"));
+    settings.level = IMK_LEVEL_SLOW;
+    CHECK_OK(imk_instrument_init(&imk_free_gyro_instrument, &d, &settings, state, &error));
+    free(state);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_parameter_is_extreme),
         cmocka_unit_test(the_figure_and_its_parameter_are_named),
         cmocka_unit_test(too_many_steps_are_refused),
+        cmocka_unit_test(a_fast_turn_is_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,6 +40,12 @@ imk_status imki_physics_check(const void *result, const imk_physics_log_settings
     return imk_design_check(settings->instrument, settings->design, error);
 }
 
+double imki_physics_turning(const imk_physics_input *input)
+{
+    const double *rate = input->exposure.angular_rate;
+    return fabs(rate[0]) + fabs(rate[1]) + fabs(rate[2]);
+}
+
 uint64_t imk_physics_rows(const imk_physics_log_settings *settings, double rate)
 {
     return (uint64_t)floor(settings->duration * rate + 0.5);
@@ -279,6 +285,7 @@ static imk_status pass(work *w, const imk_job *job, imki_arena *arena, imk_error
     imk_physics_settings settings = w->log->settings.physics;
     settings.rate = w->rate;
     settings.duration = w->log->settings.duration;
+    settings.turning = imki_physics_turning(&w->log->settings.input);
     settings.steps_max =
         fmin(IMK_PHYSICS_STEPS * fmax(1.0, settings.duration), IMK_PHYSICS_STEPS_MAX);
     const size_t size = instrument->state_size;

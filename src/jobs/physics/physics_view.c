@@ -171,6 +171,8 @@ imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t
     physics.rate = view->rate;
     physics.duration = view->settle + view->duration;
     physics.steps_max = IMK_PHYSICS_STEPS;
+    const imk_physics_input input = input_of(settings, view);
+    physics.turning = imki_physics_turning(&input);
     status = state && v->data
                  ? imk_instrument_init(instrument, settings->design, &physics, state, error)
                  : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
