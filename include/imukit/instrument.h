@@ -184,7 +184,7 @@ IMK_API const imk_instrument *imk_instrument_get(size_t index);
 IMK_API const imk_instrument *imk_instrument_find(const char *name);
 
 /** Check that a design belongs to this instrument, that every field is finite and in its range,
- * that the design is possible as a whole, and that every number of its error model
+ *  that the design is possible as a whole, and that every number of its error model
  *  (imk_instrument_reduce()) is finite. If one is not, error.field is the parameter that makes the
  *  difference to the default design.
  *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */

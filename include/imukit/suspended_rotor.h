@@ -130,7 +130,7 @@ IMK_API double imk_suspended_rotor_lift_off(const imk_suspended_rotor *design);
  *  @param force  along one axis [m/s^2] */
 IMK_API double imk_suspended_rotor_impact(const imk_suspended_rotor *design, double force);
 /** Time in which a ball that lies on its stop, its spin axis across the force, runs down: H over
- * the friction's torque, friction (diameter/2) m (f - lift off) [s]. Infinite without friction. */
+ *  the friction's torque, friction (diameter/2) m (f - lift off) [s]. Infinite without friction. */
 IMK_API double imk_suspended_rotor_run_down(const imk_suspended_rotor *design, double force);
 
 /** The instrument; outputs and signals are in its tables. */
