@@ -54,6 +54,8 @@ move tuned_gyro-path-in-motion tuned_gyro --view path
 
 draw suspended_rotor-the-axis-stays-the-case-turns suspended_rotor --view "the axis"
 draw suspended_rotor-drift suspended_rotor --view drift
+draw suspended_rotor-fall suspended_rotor --view "the ball"
+draw suspended_rotor-run-down suspended_rotor --view "the fallen"
 
 draw fibre_optic-light-on-the-fringe fibre_optic --view light
 move fibre_optic-operating-point fibre_optic --view light

@@ -5,7 +5,21 @@
 
 #include "imukit/thread_pool.h"
 
+#include <math.h>
 #include <string.h>
+
+/* The slow level, where it is not slow as well. */
+static void suggest_level(const physics *p, imk_error *error)
+{
+    imk_physics_settings slow = p->settings.physics;
+    slow.level = IMK_LEVEL_SLOW;
+    const double step = p->settings.instrument->step_length(p->settings.design, &slow);
+    const size_t length = strlen(error->expected);
+    if (p->options->level == 0 && p->options->step == 0 &&
+        p->settings.duration <= IMK_PHYSICS_STEPS * step)
+        snprintf(error->expected + length, sizeof error->expected - length,
+                 ", or add --level slow");
+}
 
 int physics_refused(const physics *p, imk_error *error)
 {
@@ -19,6 +33,12 @@ int physics_refused(const physics *p, imk_error *error)
                          : "\"%.6g Hz\" is outside its valid range (limit %.6g Hz)",
                  error->value, error->limit);
         snprintf(error->field, sizeof error->field, is_step ? "--step" : "--output-rate");
+    } else if (strcmp(error->field, "duration") == 0) {
+        /* a view has a duration of its own */
+        const bool is_run = !isnan(p->options->duration);
+        snprintf(error->field, sizeof error->field, is_run ? "--duration" : "");
+        if (is_run)
+            suggest_level(p, error);
     } else if (strcmp(error->field, "level") == 0) {
         snprintf(error->field, sizeof error->field, "--level");
     }

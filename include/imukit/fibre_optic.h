@@ -75,7 +75,7 @@ typedef struct imk_fibre_optic {
                                         polarized thermal light */
     double optics_loss; /**< loss from source to detector without the fibre, as exponent: ln(10)/10
                            per dB */
-    double visibility;  /**< V of the fringes, 0 … 1 */
+    double visibility;  /**< V of the fringes, 1e-6 … 1 */
 
     double modulation_depth; /**< b [rad], 0 … 3.1 */
     double depth_error;      /**< relative [1] */

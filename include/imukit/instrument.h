@@ -57,7 +57,14 @@ typedef struct imk_physics_settings {
     double step; /**< internal step [s], shortened to a whole fraction of 1/rate; 0 (default): the
                     longest with the instrument's stated accuracy. A step that would give wrong
                     results is refused */
-    bool noise;  /**< false: no random effects, including the constants of the run; default true */
+    double duration;  /**< length of the run that is to come [s]; 0 (default): not known */
+    double turning;   /**< largest angular rate in it, the sum of the axes [rad/s]; 0 (default): not
+                         known. Of the instruments whose steps are divided when the case turns fast
+                         (free_gyro) it counts for steps_max */
+    double steps_max; /**< a run of this duration that needs more internal steps is refused by
+                         imk_instrument_init() (field "duration"); 0 (default): any number may be.
+                         A step takes 10 to 400 ns */
+    bool noise; /**< false: no random effects, including the constants of the run; default true */
     uint64_t seed;
     uint32_t run; /**< run number: each run is another random draw of the same instrument */
     uint8_t axis; /**< number of one of several identical instruments, 0 … 255: each has its own
@@ -113,7 +120,8 @@ typedef struct imk_view {
     double settle;              /**< time simulated before the figure begins [s] */
     /** Default input of the figure: rate [rad/s] or specific force [m/s^2] along x. */
     double input;
-    bool points; /**< drawn as separate points, because the signals jump */
+    double force; /**< default specific force along x of the figure of a gyro [m/s^2] */
+    bool points;  /**< drawn as separate points, because the signals jump */
 } imk_view;
 
 /* ---- derived quantities ---------------------------------------------------------------------- */
@@ -131,6 +139,14 @@ typedef struct imk_derived {
     double (*value)(const void *design);
     const char *absent; /**< why a design has none, "no loop holds the float"; NULL: all have one */
 } imk_derived;
+
+/** What happened in a run that its readings do not say by themselves. */
+typedef struct imk_instrument_event {
+    const char *code; /**< of the message: a finding of job.h */
+    const char *name; /**< a word of the message */
+    size_t count;     /**< numbers of the message */
+    double number[6];
+} imk_instrument_event;
 
 /* ---- the interface --------------------------------------------------------------------------- */
 
@@ -168,6 +184,8 @@ typedef struct imk_instrument {
     void (*step)(void *state, const imk_exposure *exposure, double *outputs);
     /** Get the present internal signals. */
     void (*observe)(const void *state, double *signals);
+    /** Get what happened since the start. NULL: nothing ever does. @return false: nothing did */
+    bool (*happened)(const void *state, imk_instrument_event *event);
     /** Called by imk_instrument_reduce() with a triad of one axis along x without errors, to fill
      *  in the errors. */
     void (*reduce)(const void *design, imk_triad *triad);
@@ -189,8 +207,10 @@ IMK_API const imk_derived *imk_instrument_derived(const imk_instrument *instrume
  *  design must be valid. */
 IMK_API double imk_derived_value(const imk_derived *derived, const void *design);
 
-/** Check that a design belongs to this instrument, that every field is finite and in its range, and
- *  that the design is possible as a whole.
+/** Check that a design belongs to this instrument, that every field is finite and in its range,
+ *  that the design is possible as a whole, and that every number of its error model
+ *  (imk_instrument_reduce()) is finite. If one is not, error.field is the parameter that makes the
+ *  difference to the default design.
  *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */
 IMK_API imk_status imk_design_check(const imk_instrument *instrument, const void *design,
                                     imk_error *error);
@@ -200,7 +220,7 @@ IMK_API imk_status imk_design_check(const imk_instrument *instrument, const void
  *                an error
  *  @return errors of imk_design_check(); IMK_ERROR_RANGE for a step (field "step") or rate that
  *          would give wrong results; IMK_ERROR_UNSUPPORTED for a level that the instrument does not
- *          have */
+ *          have; IMK_ERROR_CONFLICT (field "duration") for a run of too many steps */
 IMK_API imk_status imk_instrument_init(const imk_instrument *instrument, const void *design,
                                        const imk_physics_settings *settings, void *state,
                                        imk_error *error);

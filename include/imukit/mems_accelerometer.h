@@ -149,9 +149,9 @@ IMK_API double imk_mems_accelerometer_brownian(const imk_mems_accelerometer *des
 /** Softening by the carrier in the middle of the gap: 2 eps A V^2/gap^3 (single-sided half of it)
  *  [N/m]. */
 IMK_API double imk_mems_accelerometer_softening(const imk_mems_accelerometer *design);
-/** Pull-in voltage, at which the mass has no equilibrium without input, for linear springs resting
- *  in the middle [V]: single V^2 = 8 k gap^3/(27 eps A), double V^2 = k gap^3/(2 eps A)
- *  [SENTURIA2001, ch. 6]. */
+/** Pull-in voltage, at which the mass has no equilibrium without input, for linear springs [V]:
+ *  single V^2 = 8 k (gap - offset)^3/(27 eps A), the plate being nearer by the offset; double,
+ *  resting in the middle, V^2 = k gap^3/(2 eps A) [SENTURIA2001, ch. 6]. */
 IMK_API double imk_mems_accelerometer_pull_in(const imk_mems_accelerometer *design);
 /** Displacement for a constant input, softening included: 1/(w0^2 - we^2) [m/(m/s^2)]. */
 IMK_API double imk_mems_accelerometer_sensitivity(const imk_mems_accelerometer *design);

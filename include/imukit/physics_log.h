@@ -25,6 +25,12 @@ typedef struct imk_physics_input {
 IMK_API imk_exposure imk_physics_input_at(const imk_physics_input *input, double rate,
                                           uint64_t index);
 
+/** Internal steps of a view, and of each second of a run (of one second at least): a design that
+ *  needs more is refused before it runs, because it would hardly end. */
+#define IMK_PHYSICS_STEPS 1e7
+/** Internal steps of any run. */
+#define IMK_PHYSICS_STEPS_MAX 1e12
+
 /** An instrument, and the settings of its jobs. Start from imk_physics_log_default(). */
 typedef struct imk_physics_log_settings {
     uint32_t cookie;
@@ -69,7 +75,8 @@ typedef struct imk_physics_log {
  *  @param job              NULL: one thread, no progress, the memory of the C library
  *  @param result           free it with imk_physics_log_free(), also after a failure, because it
  *                          then holds the findings; NULL if there was no memory for it
- *  @return errors of the instrument's init; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (error.field
+ *  @return errors of the instrument's init, of which IMK_ERROR_CONFLICT (error.field "duration")
+ *          is a run of too many steps; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (error.field
  *          "duration": no sample fits); with a finding that says why: IMK_ERROR_NOT_FINITE
  *          ("output_not_finite") and errors of the sinks ("not_written") */
 IMK_API imk_status imk_physics_log_run(const imk_physics_log_settings *settings,

@@ -36,12 +36,17 @@ typedef struct imk_suspended_rotor {
     double hollow;             /**< diameter of the hollow inside, 0: solid [m] */
     double density;            /**< [kg/m^3], > 0 */
     double inertia_difference; /**< (C - A)/A > 0, so that the ball spins about a stable axis [1] */
-    double unbalance;  /**< distance of the centre of mass from the centre, along the spin [m] */
-    double oblateness; /**< height of the second harmonic of the spinning shape, of P2 (negative:
-                            flattened at the poles) [m] */
-    double pear;       /**< height of the third harmonic, of P3 [m] */
-    double limit;      /**< largest specific force that the suspension can support along each axis
-                          [m/s^2], > 0 */
+    double unbalance;   /**< distance of the centre of mass from the centre, along the spin [m] */
+    double oblateness;  /**< height of the second harmonic of the spinning shape, of P2 (negative:
+                             flattened at the poles) [m] */
+    double pear;        /**< height of the third harmonic, of P3 [m] */
+    double limit;       /**< largest specific force that the suspension can support along each axis
+                           [m/s^2], > 0 */
+    double gap;         /**< distance of the ball from the electrodes [m], > 0 */
+    double clearance;   /**< distance of the ball from its stops [m], > 0, smaller than the gap */
+    double bandwidth;   /**< natural frequency of the ball in the control of the field [Hz], > 0 */
+    double restitution; /**< speed behind an impact on a stop over the speed before it [1] */
+    double friction;    /**< of the ball on a stop, force over normal force [1] */
     double preload_error[3];     /**< relative errors of the preloads of the three pairs [1] */
     double torque[3];            /**< constant error torque [N m] */
     double torque_temperature;   /**< change of each component, from 293.15 K [N m/K] */
@@ -58,13 +63,14 @@ typedef struct imk_suspended_rotor {
 
 /** A ball like that of the Autonetics MICRON (N57A): solid beryllium, 10 mm, 2500 revolutions a
  *  second [LAWRENCE1998]. Beryllium has 1848 kg/m^3. The rest is chosen: a suspension for 25 g,
+ *  electrodes at 10 um and stops at 5 um,
  *  torques of a strategic gyro (0.002 deg/h from run to run, 0.0005 deg/h of flicker, 0.0003
  *  deg/sqrt(h)), a centre of mass known to a nanometre (0.013 deg/h/g), shape errors of tens of
  *  nanometres or less, 1 arcsec steps. */
 IMK_API imk_suspended_rotor imk_suspended_rotor_default(void);
 
 /** Check a design: every field must be in its range, the hollow smaller than the ball, the centre
- *  of mass inside it, and shape errors small against the radius.
+ *  of mass inside it, shape errors small against the radius, the stops nearer than the electrodes.
  *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */
 IMK_API imk_status imk_suspended_rotor_validate(const imk_suspended_rotor *design,
                                                 imk_error *error);
@@ -103,6 +109,29 @@ IMK_API double imk_suspended_rotor_wobble(const imk_suspended_rotor *design);
  *  @param axis  s, of unit length */
 IMK_API void imk_suspended_rotor_drift(const imk_suspended_rotor *design, const double axis[3],
                                        const double force[3], double drift[3]);
+
+/* ---- touch-down ------------------------------------------------------------------------------
+ *
+ * With a fixed voltage an electrode pulls with the inverse square of its distance. Displaced by x
+ * against the largest pull of the electrode on the other side, the ball has the acceleration
+ *
+ *     x'' = f - limit (gap/(gap + x))^2
+ *
+ * so that it falls as soon as f exceeds the limit, and cannot be lifted before f is much smaller.
+ */
+
+/** Specific force along one axis beyond which the ball falls on its stop: the limit [m/s^2]. */
+IMK_API double imk_suspended_rotor_touch_down(const imk_suspended_rotor *design);
+/** Specific force below which the suspension lifts the ball from the stop: limit (gap/(gap +
+ *  clearance))^2 [m/s^2]. */
+IMK_API double imk_suspended_rotor_lift_off(const imk_suspended_rotor *design);
+/** Speed at which a ball at rest in the centre meets its stop under a constant force above the
+ *  limit: v^2 = 2 clearance (f - limit gap/(gap + clearance)) [m/s].
+ *  @param force  along one axis [m/s^2] */
+IMK_API double imk_suspended_rotor_impact(const imk_suspended_rotor *design, double force);
+/** Time in which a ball that lies on its stop, its spin axis across the force, runs down: H over
+ *  the friction's torque, friction (diameter/2) m (f - lift off) [s]. Infinite without friction. */
+IMK_API double imk_suspended_rotor_run_down(const imk_suspended_rotor *design, double force);
 
 /** The instrument; outputs and signals are in its tables. */
 IMK_API extern const imk_instrument imk_suspended_rotor_instrument;

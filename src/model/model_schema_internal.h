@@ -98,6 +98,9 @@ bool imki_field_absent(const imki_field *field, const imk_triad *triad);
 bool imki_numbers_equal(const imki_field *field, const void *a, const void *b, int axis_count,
                         bool with_sigmas);
 
+/* The first field of a triad with a number or a sigma that is not finite; NULL: all are. */
+const imki_field *imki_triad_not_finite(const imk_triad *triad);
+
 /* What a check refuses: part.field[element].member of a model, of this axis or row. NULL and -1
  * stand for what the place does not have. */
 typedef struct imki_fault {

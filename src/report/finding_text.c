@@ -19,6 +19,10 @@
     "if its clusters do not overlap, and check --rate and --duration. Do not trust the intervals."
 #define PLAN_LENGTH "--plan: a record of {0g} s at {1g} Hz does not have 256 to 1e12 samples; "
 
+#define NEARER                                                                                     \
+    "bring the design nearer to the default one, which imukit physics {other} --show prints, or "  \
+    "the input nearer to 0"
+
 #define SAMPLES_FIRST ": {0} of {1} samples (first: row {2})"
 
 /* Formats that define their columns refuse --columns, and a log without names has none to map. */
@@ -667,7 +671,8 @@ static const struct message {
     {"compensate:gaps",
      "gaps and steps back in time: {0} (first: row {1}); each begins a new stretch"},
     /* physics_log.c, physics_warnings.c */
-    {"output_not_finite", "the output is not finite after {0g} s"},
+    {"output_not_finite", "{name} is not finite at {0g} s; " NEARER},
+    {"statistics_not_finite", "the scatter of {name} is beyond what a number can hold; " NEARER},
     {"range", "the input of {0u} is beyond the range of {2u}"},
     {"physics:saturated", "the output ends saturated, at {1u}; the input is {0u}"},
     {"dead_band", "the input of {0u} is within the dead band of {3u}: the output does not follow "
@@ -675,6 +680,10 @@ static const struct message {
     {"not_followed", "the output ends at {1u}, the input is {0u}"},
     {"physics:temperature",
      "{0.4g} degC is outside the temperature range of this design, {1.4g} to {2.4g} degC"},
+    {"physics:touched",
+     "the ball touched its stop at {name} after {0.5g} s{5?}, at {5.3g} m/s{?}, under {1.5g} m/s^2 "
+     "({2.5g} g): the suspension carries {3.5g} m/s^2 ({4.5g} g) along each axis; since then the "
+     "readings are those of a ball that drags on the stop or was slowed down by it"},
     /* grade_position.c */
     {"nothing_to_grade", "states no bias repeatability, no bias instability and no uncertainty of "
                          "the fixed bias: there is nothing to grade"},

@@ -241,6 +241,36 @@ static void test_levels_and_warnings(void **state)
     sweep();
 }
 
+/* The numbers are those of test_suspended_touch_down.c: the limit, and v and t by energy within 1
+ * %.
+ */
+static void test_touch_down(void **state)
+{
+    (void)state;
+    check_message("$I physics suspended_rotor --acceleration '24.9 g' -d 100ms -o a.csv >t.txt", 0,
+                  "");
+    assert_int_equal(
+        run("$I physics suspended_rotor --acceleration '26 g' -d 100ms -o a.csv >t.txt"), 0);
+    double time = 0, speed = 0;
+    const char *at = strstr(err, "warning: the ball touched its stop at -x after ");
+    assert_non_null(at);
+    assert_int_equal(sscanf(at, "warning: the ball touched its stop at -x after %lf s, at %lf m/s",
+                            &time, &speed),
+                     2);
+    CHECK_RELATIVE(time, 5.878e-4, 0.01);
+    CHECK_RELATIVE(speed, 0.03025, 0.01);
+    check_contains(err, "under 254.97 m/s^2 (26 g): the suspension carries 245.17 m/s^2 (25 g) ",
+                   "forces");
+    assert_int_equal(run("$I physics suspended_rotor --acceleration '26 g' -d 100ms --level slow "
+                         "--json"),
+                     0);
+    json_t *document = json_of(out);
+    json_t *warning = json_array_get(json_object_get(document, "warnings"), 0);
+    assert_string_equal(json_string_value(json_object_get(warning, "code")), "touched");
+    json_decref(document);
+    sweep();
+}
+
 /* ---- the error model ------------------------------------------------------------------------- */
 
 static void test_reduce(void **state)
@@ -527,6 +557,41 @@ static void test_refusals(void **state)
     assert_int_equal(sweep(), 0);
 }
 
+/* A millionth of the step of the default inertia, 3.88e-5 s. */
+static void test_fast_designs(void **state)
+{
+    (void)state;
+    put("d.yaml", "imukit: 1\ninstrument: pendulous_servo\npendulum: {inertia: 3e-20 kg m^2}\n");
+    check_message(
+        "$I physics d.yaml -d 1s -o a.csv", 1,
+        E "--duration: the run of 1 s needs 2.58e+10 internal steps of 3.88e-11 s; "
+          "expected at most 1e+07 (at least 8 steps to a cycle of the captured "
+          "pendulum): make the design or the input slower, or the run shorter, or add --level "
+          "slow\n");
+    check_message("$I physics d.yaml --view 1 --plot a.svg", 1,
+                  E "d.yaml: the run of 0.02 s needs 5.15e+08 internal steps of 3.88e-11 s; "
+                    "expected at most 1e+07 (at least 8 steps to a cycle of the captured "
+                    "pendulum): make the design or the input slower, or the run shorter\n");
+    check_message("$I physics pendulous_servo -d 1s --step 1ns -o a.csv", 1,
+                  E "--duration: the run of 1 s needs 1e+09 internal steps of 1e-09 s; expected at "
+                    "most 1e+07: take a longer step\n");
+    assert_int_equal(run("$I physics d.yaml -d 1s --level slow -o a.csv >t.txt"), 0);
+    sweep();
+}
+
+/* A temperature of 1e297 degC is a number; its scatter is none. */
+static void test_figures_that_are_none(void **state)
+{
+    (void)state;
+    put("d.yaml", "imukit: 1\ninstrument: vibrating_beam\nbeam: {frequency_temperature: -2e-299 "
+                  "ppm/K}\n");
+    check_message("$I physics d.yaml -d 1s >t.txt", 1,
+                  E "the scatter of temperature is beyond what a number can hold; bring the design "
+                    "nearer to the default one, which imukit physics vibrating_beam --show "
+                    "prints, or the input nearer to 0\n");
+    sweep();
+}
+
 static void test_bad_designs(void **state)
 {
     (void)state;
@@ -548,6 +613,11 @@ static void test_bad_designs(void **state)
         check_message("$I physics d.yaml --reduce -o m.yaml", 1, texts[i][1]);
         assert_int_equal(sweep(), 1); /* the design itself */
     }
+    put("d.yaml", "imukit: 1\ninstrument: rate_gyro\nspring: {stiffness: 8e-302 N m/rad}\n");
+    check_message("$I physics d.yaml --reduce", 1,
+                  E "d.yaml:3:21: spring.stiffness: \"8e-302 N*m/rad\" is in conflict; "
+                    "nonlinearity.k2 of the error model is not finite with this value: bring it "
+                    "nearer to that of the default design\n");
     put("d.yaml", "imukit: 1\ninstrument: ring_laser\ncavity: {perimeter: -1 m}\n");
     assert_int_equal(run("$I physics d.yaml -d 1s -o a.csv"), 1);
     check_contains(err,
@@ -583,6 +653,7 @@ int main(void)
         cmocka_unit_test(test_temperature_and_signals),
         cmocka_unit_test(test_told_temperature),
         cmocka_unit_test(test_levels_and_warnings),
+        cmocka_unit_test(test_touch_down),
         cmocka_unit_test(test_reduce),
         cmocka_unit_test(test_derived),
         cmocka_unit_test(test_sweep),
@@ -590,6 +661,8 @@ int main(void)
         cmocka_unit_test(test_examples),
         cmocka_unit_test(test_pictures),
         cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_fast_designs),
+        cmocka_unit_test(test_figures_that_are_none),
         cmocka_unit_test(test_bad_designs),
         cmocka_unit_test(test_design_for_a_model),
     };

@@ -436,7 +436,7 @@ static void mems_accelerometer(void **state)
         /* as above, z = 21.7926 nm */
         {"natural frequency, softened", 1789.23757721},
         {"change of capacitance per specific force", 2.86437124044e-14},
-        {"pull-in voltage", sqrt(8.0 * k * gap * gap * gap / (27.0 * ea))},
+        {"pull-in voltage", sqrt(8.0 * k * pow(gap - 10e-9, 3.0) / (27.0 * ea))}, /* of the rest */
     };
     CHECK_ROWS(imk_mems_accelerometer_instrument, &d, single);
 }

@@ -15,7 +15,7 @@ static const double gravity = 9.80665;
 static const imk_instrument *const gyro = &imk_suspended_rotor_instrument;
 
 /* Signals by place. */
-enum { AXIS_X, AXIS_Y, AXIS_Z, DRIFT, WOBBLE, FALLEN };
+enum { AXIS_X, AXIS_Y, AXIS_Z, DRIFT, WOBBLE };
 
 /* No error but those of shape, unbalance and preload. */
 static imk_suspended_rotor quiet(void)
@@ -379,30 +379,6 @@ static void grade(void **unused)
 
 /* ---- refusals, bits -------------------------------------------------------------------------- */
 
-/* A force beyond the suspension's: the ball touches the electrodes, and there are no readings any
- * more. */
-static void ball_falls(void **unused)
-{
-    (void)unused;
-    const imk_suspended_rotor d = imk_suspended_rotor_default();
-    const imk_physics_settings settings = settings_of(IMK_LEVEL_FULL, 100.0, true);
-    imk_exposure x = imk_exposure_default();
-    double out[IMK_INSTRUMENT_OUTPUTS_MAX], signals[IMK_INSTRUMENT_SIGNALS_MAX];
-    void *state = started(gyro, &d, &settings);
-    x.specific_force[1] = -24.9 * gravity;
-    gyro->step(state, &x, out);
-    assert_true(isfinite(out[0]));
-    x.specific_force[1] = -25.1 * gravity;
-    gyro->step(state, &x, out);
-    assert_true(isnan(out[0]) && isnan(out[4]));
-    x.specific_force[1] = 0.0;
-    gyro->step(state, &x, out);
-    assert_true(isnan(out[0]));
-    gyro->observe(state, signals);
-    assert_true(signals[FALLEN] == 1.0);
-    free(state);
-}
-
 static void refused(const imk_suspended_rotor *d, imk_status status, const char *field)
 {
     imk_error error = {0};
@@ -426,6 +402,14 @@ static void refusals(void **unused)
     d = good;
     d.hollow = d.diameter;
     refused(&d, IMK_ERROR_CONFLICT, "ball.hollow");
+    d = good;
+    d.clearance = d.gap;
+    refused(&d, IMK_ERROR_CONFLICT, "suspension.clearance");
+    d = good;
+    d.limit = 1e6; /* 2 limit/gap = 2e12/s^2 with a micrometre */
+    d.gap = 1e-6;
+    d.clearance = 5e-7;
+    refused(&d, IMK_ERROR_CONFLICT, "suspension.gap");
     d = good;
     d.oblateness = 6e-6;
     refused(&d, IMK_ERROR_CONFLICT, "ball.oblateness");
@@ -484,7 +468,6 @@ int main(void)
         cmocka_unit_test(angle_random_walk),
         cmocka_unit_test(chain),
         cmocka_unit_test(grade),
-        cmocka_unit_test(ball_falls),
         cmocka_unit_test(refusals),
         cmocka_unit_test(same_bits),
     };

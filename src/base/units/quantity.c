@@ -93,6 +93,19 @@ static bool is_unit_one(const char *at, const char *end)
     return *at == '1' && (next == end || *next == '/');
 }
 
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/* A number as imk_decimal_parse() reads it, but no beginning of a longer word: the unit nanogram is
+ * no nan. */
+static const char *read_number(const char *at, const char *end, double *number)
+{
+    const char *next = imk_decimal_parse(at, end, number);
+    return next > at && is_letter(next[-1]) && next < end && is_letter(*next) ? at : next;
+}
+
 /* Numbers from `at` to the first thing that is none. @return where that is */
 static const char *read_numbers(const char *at, const char *end, size_t max_count, double *numbers,
                                 size_t *count, bool *too_many)
@@ -104,7 +117,7 @@ static const char *read_numbers(const char *at, const char *end, size_t max_coun
         if (at == end || match_plus_minus(at, end) || (read > 0 && is_unit_one(at, end)))
             break;
         double number;
-        const char *next = imk_decimal_parse(at, end, &number);
+        const char *next = read_number(at, end, &number);
         if (next == at)
             break;
         if (read == max_count) {

@@ -264,6 +264,11 @@ static const imki_named_unit units[] = {
 
 enum { UNIT_COUNT = (int)(sizeof units / sizeof units[0]) };
 
+size_t imki_unit_count(void)
+{
+    return UNIT_COUNT;
+}
+
 const imki_named_unit *imki_unit_find(const char *name)
 {
     for (size_t i = 0; i < UNIT_COUNT; i++) {

@@ -22,6 +22,9 @@ typedef struct imki_named_unit {
     bool is_hertz; /**< Hz or a multiple: its root makes a density */
 } imki_named_unit;
 
+/** How many units have names. */
+size_t imki_unit_count(void);
+
 /** By exact name, µ as u and ° as deg; NULL when unknown. */
 const imki_named_unit *imki_unit_find(const char *name);
 

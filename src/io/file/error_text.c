@@ -16,6 +16,7 @@
 #include "imukit/io.h"
 #include "imukit/utf8.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -137,7 +138,7 @@ static void add_numbers(message *s, const imk_error *error, const wording *w)
     add_number(s, error->value, error->limit);
     add(s, " ");
     add(s, w->numbers);
-    if (!w->limit || error->limit == 0.0)
+    if (!w->limit || error->limit == 0.0 || !isfinite(error->limit))
         return;
     add(s, " (");
     add(s, w->limit);
@@ -155,10 +156,10 @@ static void add_finding(message *s, const imk_error *error)
         add_numbers(s, error, w);
     } else {
         add(s, imk_status_text(error->status));
-        if (numbers) {
+        if (numbers && isfinite(error->value)) {
             add(s, " (");
             add_number(s, error->value, error->limit);
-            if (error->limit != 0.0) {
+            if (error->limit != 0.0 && isfinite(error->limit)) {
                 add(s, ", limit ");
                 add_number(s, error->limit, error->value);
             }

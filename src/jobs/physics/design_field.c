@@ -4,6 +4,7 @@
 #include "imukit/physics_log.h"
 #include "imukit/units.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -116,10 +117,11 @@ void imk_design_error_in_units(const imk_instrument *instrument, const void *des
         if (!number_of(field, design, &value) || value != error->value)
             return;
         number_in_unit(field, value, value_text, sizeof value_text);
-        number_in_unit(field, error->limit, limit_text, sizeof limit_text);
-        snprintf(error->found, sizeof error->found, "\"%.28s\" %s (limit %.28s)", value_text,
+        if (isfinite(error->limit))
+            number_in_unit(field, error->limit, limit_text, sizeof limit_text);
+        snprintf(error->found, sizeof error->found, "\"%.28s\" %s%s%.28s%s", value_text,
                  error->status == IMK_ERROR_RANGE ? "is outside its valid range" : "is in conflict",
-                 limit_text);
+                 limit_text[0] ? " (limit " : "", limit_text, limit_text[0] ? ")" : "");
         return;
     }
 }

@@ -40,6 +40,12 @@ imk_status imki_physics_check(const void *result, const imk_physics_log_settings
     return imk_design_check(settings->instrument, settings->design, error);
 }
 
+double imki_physics_turning(const imk_physics_input *input)
+{
+    const double *rate = input->exposure.angular_rate;
+    return fabs(rate[0]) + fabs(rate[1]) + fabs(rate[2]);
+}
+
 uint64_t imk_physics_rows(const imk_physics_log_settings *settings, double rate)
 {
     return (uint64_t)floor(settings->duration * rate + 0.5);
@@ -183,10 +189,35 @@ static void add_to_statistics(imk_physics_log *log, uint64_t index, const double
     }
 }
 
-/* Statistics, and the picture in the units that fit them. */
-static void finish(imk_physics_log *log)
+/* No figure is shown that is none: the first that is not finite ends the run.
+ * @param value  of each signal, in SI; or a figure made of them */
+static imk_status check_finite(imk_physics_log *log, size_t count, const double *value,
+                               const imk_signal *signals, const char *code, double time,
+                               imk_error *error)
 {
-    for (size_t i = 0; i < log->settings.instrument->output_count; i++) {
+    char names[sizeof log->findings.item[0].name];
+    for (size_t i = 0; i < count; i++) {
+        if (isfinite(value[i]))
+            continue;
+        snprintf(names, sizeof names, "%s\t%s", signals[i].name, log->settings.instrument->name);
+        return imki_fail(&log->findings, error, IMK_ERROR_NOT_FINITE, code, names,
+                         IMKI_NUMBERS(time));
+    }
+    return IMK_OK;
+}
+
+/* Statistics, and the picture in the units that fit them. */
+static imk_status finish(imk_physics_log *log, imk_error *error)
+{
+    const imk_instrument *instrument = log->settings.instrument;
+    for (size_t i = 0; i < instrument->output_count; i++) {
+        const double sizes[] = {log->mean[i], log->deviation[i], log->last[i]};
+        for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
+            const imk_status status = check_finite(log, 1, &sizes[k], &instrument->outputs[i],
+                                                   "statistics_not_finite", 0, error);
+            if (status != IMK_OK)
+                return status;
+        }
         log->deviation[i] =
             log->samples > 1 ? sqrt(log->deviation[i] / (double)(log->samples - 1)) : (double)NAN;
         const imk_unit unit = imk_physics_output_unit(log, i);
@@ -196,6 +227,7 @@ static void finish(imk_physics_log *log)
                 log->input[k] /= unit.scale;
         }
     }
+    return IMK_OK;
 }
 
 /* What a pass through the samples is for: statistics of the outputs, sheets, or both. */
@@ -215,24 +247,35 @@ static imk_status take_sample(work *w, void *state, uint64_t k, imk_error *error
     double values[IMK_INSTRUMENT_OUTPUTS_MAX], inside[IMK_INSTRUMENT_SIGNALS_MAX];
     const imk_exposure e = imk_physics_input_at(&log->settings.input, w->rate, k);
     const double time = (double)(k + 1) / w->rate;
-    imk_status status = IMK_OK;
     instrument->step(state, &e, values);
-    if (!isfinite(values[0]))
-        return imki_fail(&log->findings, error, IMK_ERROR_NOT_FINITE, "output_not_finite", NULL,
-                         IMKI_NUMBERS(time));
-    if (w->outputs)
+    imk_status status = check_finite(log, instrument->output_count, values, instrument->outputs,
+                                     "output_not_finite", time, error);
+    if (w->outputs && status == IMK_OK)
         status =
             put_row(log, w->outputs, time, values, instrument->output_count, e.temperature, error);
     if (w->signals && status == IMK_OK) {
         instrument->observe(state, inside);
-        status = put_row(log, w->signals, time, inside, instrument->signal_count, 0, error);
+        status = check_finite(log, instrument->signal_count, inside, instrument->signals,
+                              "output_not_finite", time, error);
+        if (status == IMK_OK)
+            status = put_row(log, w->signals, time, inside, instrument->signal_count, 0, error);
     }
-    if (w->counts) {
+    if (w->counts && status == IMK_OK) {
         add_to_statistics(log, k, values, instrument->output_count);
         add_to_picture(log, &w->at, time, values, instrument->output_count,
                        instrument->sensor == IMK_GYRO ? e.angular_rate[0] : e.specific_force[0]);
     }
     return status;
+}
+
+/* What happened inside, that the outputs do not say. */
+static void tell_event(imk_physics_log *log, const void *state)
+{
+    const imk_instrument *instrument = log->settings.instrument;
+    imk_instrument_event event;
+    if (instrument->happened && instrument->happened(state, &event))
+        imki_find(&log->findings, IMK_FINDING_WARNING, event.code, event.name, event.count,
+                  event.number);
 }
 
 static imk_status pass(work *w, const imk_job *job, imki_arena *arena, imk_error *error)
@@ -241,6 +284,10 @@ static imk_status pass(work *w, const imk_job *job, imki_arena *arena, imk_error
     const uint64_t samples = imk_physics_rows(&w->log->settings, w->rate);
     imk_physics_settings settings = w->log->settings.physics;
     settings.rate = w->rate;
+    settings.duration = w->log->settings.duration;
+    settings.turning = imki_physics_turning(&w->log->settings.input);
+    settings.steps_max =
+        fmin(IMK_PHYSICS_STEPS * fmax(1.0, settings.duration), IMK_PHYSICS_STEPS_MAX);
     const size_t size = instrument->state_size;
     void *state = imki_arena_take(arena, size > 256 ? size : 256); /* a cache line begins there */
     if (!state)
@@ -252,6 +299,8 @@ static imk_status pass(work *w, const imk_job *job, imki_arena *arena, imk_error
         if (status == IMK_OK)
             status = imki_job_progress(job, w->stage, "samples", k + 1, samples, error);
     }
+    if (w->counts && status == IMK_OK)
+        tell_event(w->log, state);
     if (status == IMK_OK && w->outputs)
         status = flush(w->log, w->outputs, error);
     return status == IMK_OK && w->signals ? flush(w->log, w->signals, error) : status;
@@ -274,10 +323,10 @@ static imk_status run(imk_physics_log *log, sheet *outputs, sheet *signals, cons
         status = pass(&first, job, arena, error);
     if (status == IMK_OK && apart)
         status = pass(&second, job, arena, error);
-    if (status == IMK_OK) {
-        finish(log);
+    if (status == IMK_OK)
+        status = finish(log, error);
+    if (status == IMK_OK)
         imki_physics_warn(log);
-    }
     return status;
 }
 

@@ -9,6 +9,8 @@
  * @param result  the place of the result */
 imk_status imki_physics_check(const void *result, const imk_physics_log_settings *settings,
                               imk_error *error);
+/* The largest angular rate of an input, the sum of the axes [rad/s]. */
+double imki_physics_turning(const imk_physics_input *input);
 /* What can be known of a run that went wrong quietly. */
 void imki_physics_warn(imk_physics_log *log);
 /* "beat frequency [kHz]"; pure numbers have no unit. @param text  IMK_PHYSICS_LABEL bytes */

@@ -34,13 +34,28 @@ static imk_physics_input input_of(const imk_physics_log_settings *settings, cons
     if (!settings->view_input) {
         const bool gyro = settings->instrument->sensor == IMK_GYRO;
         (gyro ? input.exposure.angular_rate : input.exposure.specific_force)[0] = view->input;
+        if (gyro)
+            input.exposure.specific_force[0] = view->force;
     }
     return input;
 }
 
+static imk_status refuse_signal(const imk_instrument *instrument, const char *name, double time,
+                                imk_error *error)
+{
+    char found[sizeof error->found], expected[sizeof error->expected];
+    snprintf(found, sizeof found, "\"%.48s\" is not finite at %.4g s", name, time);
+    snprintf(
+        expected, sizeof expected,
+        "bring the design nearer to the default one, which imukit physics %.40s --show prints, "
+        "or the input nearer to 0",
+        instrument->name);
+    return imk_error_set(error, IMK_ERROR_NOT_FINITE, "", found, expected);
+}
+
 /* Rows of x, y … in display units into `data`. */
-static void record(const imk_physics_log_settings *settings, const imk_physics_view *v,
-                   uint64_t stride, void *state)
+static imk_status record(const imk_physics_log_settings *settings, const imk_physics_view *v,
+                         uint64_t stride, void *state, imk_error *error)
 {
     const imk_instrument *instrument = settings->instrument;
     const imk_view *view = &v->view;
@@ -61,10 +76,14 @@ static void record(const imk_physics_log_settings *settings, const imk_physics_v
         for (int c = -1; c < view->curve_count; c++) {
             const int signal = c < 0 ? view->x : view->y[c];
             const imk_unit unit = imk_unit_of(signal < 0 ? "s" : instrument->signals[signal].unit);
-            const double value = signal < 0 ? (double)(k + 1) / view->rate : inside[signal];
+            const double time = (double)(k + 1) / view->rate;
+            const double value = signal < 0 ? time : inside[signal];
+            if (!isfinite(value))
+                return refuse_signal(instrument, instrument->signals[signal].name, time, error);
             v->data[(size_t)(c + 1) * v->points + row] = (value - unit.offset) / unit.scale;
         }
     }
+    return IMK_OK;
 }
 
 /* The time axis of a short view is in ms or us. @return its unit */
@@ -150,11 +169,16 @@ imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t
                           ((size_t)(view->curve_count + 1) * v->points + 1) * sizeof *v->data);
     imk_physics_settings physics = settings->physics;
     physics.rate = view->rate;
+    physics.duration = view->settle + view->duration;
+    physics.steps_max = IMK_PHYSICS_STEPS;
+    const imk_physics_input input = input_of(settings, view);
+    physics.turning = imki_physics_turning(&input);
     status = state && v->data
                  ? imk_instrument_init(instrument, settings->design, &physics, state, error)
                  : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    if (status == IMK_OK)
+        status = record(settings, v, stride, state, error);
     if (status == IMK_OK) {
-        record(settings, v, stride, state);
         label_view(view->x < 0 ? scale_time(view, v->points, v->data)
                                : instrument->signals[view->x].unit,
                    v);

@@ -85,7 +85,7 @@ static const imk_design_field fields[] = {
     NUMBER("source.intensity_noise", intensity_noise, "1/Hz", 0, 1e-3,
            "relative intensity noise, one-sided; 0: that of thermal light of this linewidth"),
     NUMBER("optics.loss", optics_loss, "dB", 0, 50, "loss of everything but the fibre"),
-    ABOVE("optics.visibility", visibility, "1", 0, 1, "contrast of the fringes"),
+    NUMBER("optics.visibility", visibility, "1", 1e-6, 1, "contrast of the fringes"),
     ABOVE("modulator.depth", modulation_depth, "deg", 0, 3.1, "phase modulation at the detector"),
     NUMBER("modulator.depth_error", depth_error, "%", -0.5, 0.5, "departure of the depth"),
     NUMBER("modulator.gain_error", gain_error, "ppm", -0.1, 0.1, "error of the ramp's phase"),

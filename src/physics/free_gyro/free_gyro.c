@@ -256,6 +256,20 @@ static void start_random(const imk_free_gyro *design, const imk_physics_settings
                       design->torque_repeatability, design->torque_instability);
 }
 
+/* The steps of a run in which the case turns fast, where that is known. */
+static imk_status check_turning(const imk_physics_settings *settings, double step, imk_error *error)
+{
+    const double longest = IMKI_FREE_GYRO_TURN / settings->turning;
+    imk_physics_settings turning = *settings;
+    size_t steps;
+    turning.step = 0.0;
+    return settings->level == IMK_LEVEL_FULL && longest < step
+               ? imki_divide_sample(&turning, longest, (double)INFINITY,
+                                    "at most 0.1 rad of the case's turn to a step", &steps, &step,
+                                    error)
+               : IMK_OK;
+}
+
 static imk_status init(const void *given, const imk_physics_settings *settings, void *memory,
                        imk_error *error)
 {
@@ -270,6 +284,8 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
                                             "its decay by friction"
                                           : "at most 0.1 s: the case turns between steps",
         &steps, &step, error);
+    if (status == IMK_OK)
+        status = check_turning(settings, step, error);
     if (status != IMK_OK)
         return status;
     *state = (imki_free_gyro_state){

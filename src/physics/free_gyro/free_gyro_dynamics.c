@@ -248,17 +248,13 @@ static inline void meet_stop(imki_free_gyro_state *state, imki_gimbals *g, const
     state->on_stop = true;
 }
 
-/* Steps are short against the nutation; where the case turns further than this in one [rad], they
- * are divided. */
-static const double largest_turn = 0.1;
-
 static size_t division(const imki_free_gyro_state *state, const imki_free_gyro_drive *drive)
 {
     double fastest = 0.0;
     for (int k = 0; k < 3; k++)
         fastest += fabs(drive->rate[k]) + 0.5 * state->sample * fabs(drive->acceleration[k]);
     const double turn = fmin(fastest, 3.0 * IMKI_EXPOSURE_RATE_MAX) * state->step;
-    return turn > largest_turn ? (size_t)ceil(turn / largest_turn) : 1;
+    return turn > IMKI_FREE_GYRO_TURN ? (size_t)ceil(turn / IMKI_FREE_GYRO_TURN) : 1;
 }
 
 void imki_free_gyro_full(imki_free_gyro_state *state, const imki_free_gyro_drive *drive)

@@ -67,6 +67,10 @@ void imki_free_gyro_trigonometry(imki_gimbals *gimbals);
 /* Momenta of a motion without nutation, but for start_nutation. */
 void imki_free_gyro_uncage(imki_free_gyro_state *state, const imki_free_gyro_drive *drive);
 /* A sample of either level. */
+/* Steps are short against the nutation; where the case turns further than this in one [rad], they
+ * are divided. */
+#define IMKI_FREE_GYRO_TURN 0.1
+
 void imki_free_gyro_full(imki_free_gyro_state *state, const imki_free_gyro_drive *drive);
 void imki_free_gyro_slow(imki_free_gyro_state *state, const imki_free_gyro_drive *drive);
 

@@ -264,7 +264,8 @@ void imki_mems_observe(const void *state, double *signals)
 double imki_mems_step_length(const void *design, const imk_physics_settings *settings)
 {
     const imk_mems_accelerometer *d = design;
-    double step = 1.0 / (IMKI_MEMS_STEPS * imki_mems_fastest(d));
+    const double steps = d->voltage_rate != 0.0 ? IMKI_MEMS_RAMP_STEPS : IMKI_MEMS_STEPS;
+    double step = 1.0 / (steps * imki_mems_fastest(d));
     if (settings->level == IMK_LEVEL_SLOW)
         return 1.0 / settings->rate;
     if (d->loop == IMK_MEMS_SIGMA_DELTA && 1.0 / d->clock < step)
@@ -286,11 +287,14 @@ static imk_status divide(mems_state *m, const imk_physics_settings *settings, im
         if (settings->rate > d->clock * (1.0 + 1e-9))
             return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, d->clock,
                                "a sample rate not above the clock of the loop");
-        const double clocks = ceil(d->clock / settings->rate * (1.0 - 1e-9));
-        if (!(clocks < 1e12))
-            return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, d->clock * 1e-12,
-                               "fewer than 1e12 clocks to a sample");
-        m->clocks = clocks > 1.0 ? (size_t)clocks : 1;
+        imk_physics_settings clocked = *settings;
+        double clock;
+        clocked.step = 0.0;
+        const imk_status status =
+            imki_divide_sample(&clocked, 1.0 / d->clock, (double)INFINITY,
+                               "at least one step to a clock", &m->clocks, &clock, error);
+        if (status != IMK_OK)
+            return status;
         unit.rate = d->clock = settings->rate * (double)m->clocks;
     }
     return imki_divide_sample(&unit, imki_mems_step_length(d, settings),

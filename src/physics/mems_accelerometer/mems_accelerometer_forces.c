@@ -160,9 +160,11 @@ double imk_mems_accelerometer_softening(const imk_mems_accelerometer *d)
 
 double imk_mems_accelerometer_pull_in(const imk_mems_accelerometer *d)
 {
-    const double cube = d->mass * spring_rate(d) * d->gap * d->gap * d->gap;
+    const bool single = d->plates == IMK_MEMS_SINGLE;
+    const double gap = single ? d->gap - d->offset : d->gap;
+    const double cube = d->mass * spring_rate(d) * gap * gap * gap;
     const double ea = IMKI_PERMITTIVITY * d->area;
-    return d->plates == IMK_MEMS_SINGLE ? sqrt(8.0 * cube / (27.0 * ea)) : sqrt(cube / (2.0 * ea));
+    return single ? sqrt(8.0 * cube / (27.0 * ea)) : sqrt(cube / (2.0 * ea));
 }
 
 double imki_mems_stiffness(const imk_mems_accelerometer *d)
