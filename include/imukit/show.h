@@ -61,6 +61,12 @@ IMK_API void imk_show_compensate_log(const imk_compensate_log *log, const char *
 IMK_API void imk_show_terms(const char *key, const char *label, const imk_term_keys *keys,
                             imk_result *result);
 
+/** Three cells of a table: size [mm], mass [g], and supply with its unit; "-" where nothing was
+ *  read. @param build  NULL: nothing was read */
+IMK_API void imk_show_build_cells(const imk_device_build *build, imk_table *table);
+/** Object "build" of a device, null when nothing was read. */
+IMK_API void imk_show_build(const imk_device_build *build, imk_result *result);
+
 /** Graded models with their names. */
 typedef struct imk_graded_several {
     size_t count;
