@@ -19,6 +19,7 @@
 #include "imukit/record_plan.h"
 #include "imukit/result.h"
 #include "imukit/spectrum_log.h"
+#include "imukit/technology_map.h"
 
 IMK_BEGIN_C
 
@@ -73,13 +74,6 @@ typedef struct imk_graded_several {
     const imk_graded *const *graded;
     const char *const *name;
 } imk_graded_several;
-/** Maps of models among classes, technologies and applications. */
-typedef enum imk_grade_map {
-    IMK_GRADE_MAP_GYRO = 0, /**< bias stability against scale-factor stability */
-    IMK_GRADE_MAP_ACCEL,
-    IMK_GRADE_MAP_COST, /**< cost against performance */
-    IMK_GRADE_MAPS      /**< all of them */
-} imk_grade_map;
 /** True when a model states enough for a map; with IMK_GRADE_MAPS, for any map. */
 IMK_API bool imk_grade_stands(const imk_graded_several *r, imk_grade_map map);
 /** Show classes, position errors, what limits them, and maps. @param map  the one to plot */
