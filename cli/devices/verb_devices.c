@@ -190,8 +190,7 @@ static void show_build_lines(const imk_device_build *b, imk_result *result)
         imk_result_line(result, "# mass: %g g", 1e3 * b->mass);
     if (b->power > 0 || b->current > 0)
         imk_result_line(result, "# supply: %s%g %s", b->is_limit ? "below " : "",
-                        1e3 * (b->power > 0 ? b->power : b->current),
-                        b->power > 0 ? "mW" : "mA");
+                        1e3 * (b->power > 0 ? b->power : b->current), b->power > 0 ? "mW" : "mA");
     imk_result_line(result, "# size, mass and supply from: %s", b->source);
 }
 

@@ -286,12 +286,12 @@ IMK_API void imk_device_model(const imk_device *device, imk_model *model);
 /** Size, mass and supply of a device of the catalogue, as read in a source. A figure of 0 was not
  *  read anywhere. */
 typedef struct imk_device_build {
-    const char *device;  /**< its name in the catalogue */
-    double size[3];      /**< [m] */
-    double mass;         /**< [kg] */
-    double power;        /**< [W] */
-    double current;      /**< of the supply [A], where the source states no power */
-    bool is_limit;       /**< power or current are upper limits */
+    const char *device; /**< its name in the catalogue */
+    double size[3];     /**< [m] */
+    double mass;        /**< [kg] */
+    double power;       /**< [W] */
+    double current;     /**< of the supply [A], where the source states no power */
+    bool is_limit;      /**< power or current are upper limits */
     const char *source;
 } imk_device_build;
 

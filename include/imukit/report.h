@@ -62,7 +62,8 @@ typedef struct imk_panel {
     size_t region_count;
     const imk_region *regions;
     imk_key_place key;
-    const char *note; /**< lines below the label of the x axis, separated by line feeds; NULL: none */
+    const char
+        *note; /**< lines below the label of the x axis, separated by line feeds; NULL: none */
 } imk_panel;
 
 /** Panels on a grid, row by row. Panels are larger if regions have labels. The title is drawn only

@@ -35,10 +35,10 @@ typedef struct imk_map_region {
     const char *detail;   /**< which part of them: "navigation"; "" for the whole */
     double x_low, x_high; /**< NaN: the source states none, and the place along x has no meaning */
     double y_low, y_high;
-    int year;             /**< of the source; 0: undated */
-    double doubt;         /**< 1: the limits were read in the source; larger: they are quoted from
-                             memory, and each may be wrong by this factor */
-    const char *source;   /**< "[KEY] place", with a key of docs/references.md */
+    int year;           /**< of the source; 0: undated */
+    double doubt;       /**< 1: the limits were read in the source; larger: they are quoted from
+                           memory, and each may be wrong by this factor */
+    const char *source; /**< "[KEY] place", with a key of docs/references.md */
 } imk_map_region;
 
 /** Number of regions of a map; 0 for IMK_GRADE_MAPS. */

@@ -13,12 +13,12 @@
 #define NO_CLAIM ((double)NAN)
 
 static const imk_grade_row grade_rows[] = {
-    {"strategic", "1 nmi / 24 h", "ESG, floated, RLG, FOG", "servo", 0.005 * DEGREES_PER_HOUR, 30 * MICRO_G,
-     NAUTICAL_MILE, 24 * HOUR},
-    {"navigation", "1 nmi / h", "floated, DTG, RLG, FOG", "servo, vibrating beam", 0.01 * DEGREES_PER_HOUR,
-     50 * MICRO_G, NAUTICAL_MILE, HOUR},
-    {"tactical", "> 10 nmi / h", "DTG, RLG, FOG", "servo, vibrating beam, MEMS", 1 * DEGREES_PER_HOUR,
-     1000 * MICRO_G, (double)INFINITY, HOUR},
+    {"strategic", "1 nmi / 24 h", "ESG, floated, RLG, FOG", "servo", 0.005 * DEGREES_PER_HOUR,
+     30 * MICRO_G, NAUTICAL_MILE, 24 * HOUR},
+    {"navigation", "1 nmi / h", "floated, DTG, RLG, FOG", "servo, vibrating beam",
+     0.01 * DEGREES_PER_HOUR, 50 * MICRO_G, NAUTICAL_MILE, HOUR},
+    {"tactical", "> 10 nmi / h", "DTG, RLG, FOG", "servo, vibrating beam, MEMS",
+     1 * DEGREES_PER_HOUR, 1000 * MICRO_G, (double)INFINITY, HOUR},
     {"AHRS", "n/a", "DTG, MEMS, RLG, FOG, Coriolis", "MEMS", 10 * DEGREES_PER_HOUR, 1000 * MICRO_G,
      NO_CLAIM, NO_CLAIM},
     {"control system", "n/a", "wheel, Coriolis", "MEMS", 1000 * DEGREES_PER_HOUR, 10000 * MICRO_G,

@@ -16,11 +16,11 @@
 #define UNSTATED (double)NAN, (double)NAN
 
 /* Scale factor [ppm] and bias [deg/h] or [ug]; prices [dollars] against bias [deg/h]. */
-#define GYRO(x0, x1, y0, y1) (x0) * PPM, (x1) * PPM, (y0) * DEG_H, (y1) * DEG_H
-#define GYRO_BIAS(y0, y1) UNSTATED, (y0) * DEG_H, (y1) * DEG_H
-#define ACCEL(x0, x1, y0, y1) (x0) * PPM, (x1) * PPM, (y0) * UG, (y1) * UG
-#define ACCEL_BIAS(y0, y1) UNSTATED, (y0) * UG, (y1) * UG
-#define PRICE(x0, x1, y0, y1) (x0) * DEG_H, (x1) * DEG_H, y0, y1
+#define GYRO(x0, x1, y0, y1) (x0) * PPM, (x1)*PPM, (y0)*DEG_H, (y1)*DEG_H
+#define GYRO_BIAS(y0, y1) UNSTATED, (y0)*DEG_H, (y1)*DEG_H
+#define ACCEL(x0, x1, y0, y1) (x0) * PPM, (x1)*PPM, (y0)*UG, (y1)*UG
+#define ACCEL_BIAS(y0, y1) UNSTATED, (y0)*UG, (y1)*UG
+#define PRICE(x0, x1, y0, y1) (x0) * DEG_H, (x1)*DEG_H, y0, y1
 
 #define TECHNOLOGY IMK_MAP_TECHNOLOGY
 #define CLASS IMK_MAP_CLASS

@@ -35,7 +35,8 @@ void imki_regions_draw(imki_text *out, const imki_frame *frame, const imk_panel 
                       "fill-opacity=\"%s\" stroke=\"%s\" stroke-width=\"8\"%s/>\n",
                       imki_tenths(box.left), imki_tenths(box.top),
                       imki_tenths(box.right - box.left), imki_tenths(box.bottom - box.top), color,
-                      panel->regions[r].dashed ? "0.05" : "0.12", color, panel->regions[r].dashed ? " stroke-dasharray=\"50 35\"" : "");
+                      panel->regions[r].dashed ? "0.05" : "0.12", color,
+                      panel->regions[r].dashed ? " stroke-dasharray=\"50 35\"" : "");
     }
 }
 

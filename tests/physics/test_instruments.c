@@ -268,8 +268,8 @@ static void classes_agree_with_the_technology_column(void **state)
         print_message("%-22s %-12s %s\n", k->name, row ? row->name : "none", k->technology);
         assert_true(k->technology[0] != '\0');
         assert_non_null(row);
-        assert_non_null(strstr(
-            k->sensor == IMK_GYRO ? row->gyro_technology : row->accel_technology, k->technology));
+        assert_non_null(strstr(k->sensor == IMK_GYRO ? row->gyro_technology : row->accel_technology,
+                               k->technology));
         free(design);
     }
     free(model);

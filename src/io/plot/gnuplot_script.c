@@ -85,9 +85,9 @@ enum { NOTE_WIDEST = 84 };
 static size_t note_width(const imki_drawing *drawing)
 {
     const int room = drawing->width - 4;
-    return drawing->terminal == IMKI_TERMINAL_TEXT && room < NOTE_WIDEST ? room > 20 ? (size_t)room
-                                                                                    : 20
-                                                                         : NOTE_WIDEST;
+    return drawing->terminal == IMKI_TERMINAL_TEXT && room < NOTE_WIDEST
+               ? room > 20 ? (size_t)room : 20
+               : NOTE_WIDEST;
 }
 
 /* The next line of a note, broken at a blank where it is too long: gnuplot breaks no labels.

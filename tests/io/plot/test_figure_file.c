@@ -33,8 +33,9 @@ static int set_up(void **state)
     curves[0] = (imk_curve){"gyro_x's", IMK_CURVE_POINTS, 0, POINTS, tau, deviation, lower, upper};
     curves[1] = (imk_curve){"fit", IMK_CURVE_DASHES, 1, POINTS, tau, line, NULL, NULL};
     curves[2] = (imk_curve){"", IMK_CURVE_BAND, 2, POINTS, tau, deviation, lower, upper};
-    panel = (imk_panel){"a_b `id` $x", "tau [s]",    "deviation [deg/h]", true, true, 3, curves, 0,
-                        NULL,          IMK_KEY_UPPER, NULL};
+    panel =
+        (imk_panel){"a_b `id` $x", "tau [s]", "deviation [deg/h]", true, true, 3, curves, 0, NULL,
+                    IMK_KEY_UPPER, NULL};
     figure = (imk_figure){"title", 1, 1, &panel};
     return mkdtemp(directory) ? 0 : -1;
 }

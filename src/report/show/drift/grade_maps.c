@@ -84,8 +84,13 @@ static void add_model(const imk_graded *one, const char *name, int color, int ma
     snprintf(label, sizeof label, "%.60s", name);
     imki_begin_curve(figure, label, line ? IMK_CURVE_DASHES : IMK_CURVE_MARKS, color % HUES);
     for (int i = 0; i < (line ? 2 : 1); i++)
-        imk_figure_point(figure, !isnan(p.at[0]) ? p.at[0] : i == 0 ? m->x.low : m->x.high,
-                         !isnan(p.at[1]) ? p.at[1] : i == 0 ? m->y.low : m->y.high);
+        imk_figure_point(figure,
+                         !isnan(p.at[0]) ? p.at[0]
+                         : i == 0        ? m->x.low
+                                         : m->x.high,
+                         !isnan(p.at[1]) ? p.at[1]
+                         : i == 0        ? m->y.low
+                                         : m->y.high);
 }
 
 static void add_panel(const imk_graded_several *r, int map, imk_figure_builder *figure)

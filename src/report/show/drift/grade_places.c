@@ -7,8 +7,13 @@
 #include <stdio.h>
 
 #define SCALE_FACTOR                                                                               \
-    {"stability of the scale factor [ppm]", "ppm", "scale factor", 0.1, 1e5}
-#define GYRO_BIAS {"stability of the bias [deg/h]", "deg/h", "bias", 1e-5, 1e5}
+    {                                                                                              \
+        "stability of the scale factor [ppm]", "ppm", "scale factor", 0.1, 1e5                     \
+    }
+#define GYRO_BIAS                                                                                  \
+    {                                                                                              \
+        "stability of the bias [deg/h]", "deg/h", "bias", 1e-5, 1e5                                \
+    }
 
 static const imki_grade_map maps[IMK_GRADE_MAPS] = {
     {"gyro", "Gyros: technologies, classes and applications",
@@ -17,18 +22,22 @@ static const imki_grade_map maps[IMK_GRADE_MAPS] = {
      "Dashed outlines: limits from memory; each may be wrong by a factor of ten.\n"
      "ESG, at the left edge, has no scale factor: its place along this axis means nothing.",
      SCALE_FACTOR, GYRO_BIAS},
-    {"accel", "Accelerometers: technologies and applications",
+    {"accel",
+     "Accelerometers: technologies and applications",
      "Coloured boxes are technologies, grey bands applications; the sources of the bands state no "
      "scale factors.",
-     "Dashed outlines: limits from memory; each may be wrong by a factor of ten.", SCALE_FACTOR,
+     "Dashed outlines: limits from memory; each may be wrong by a factor of ten.",
+     SCALE_FACTOR,
      {"stability of the bias [ug]", "ug", "bias", 0.01, 1e6}},
-    {"cost", "Price of a whole unit against the bias of its gyros",
+    {"cost",
+     "Price of a whole unit against the bias of its gyros",
      "A published single number is drawn as a range of a factor of two to either side. No price of "
      "a unit with floated or tuned gyros was found.",
      "Prices of whole units only. Models state no price: the height of their lines means nothing.",
      {"stability of the gyro bias [deg/h]", "deg/h", "gyro bias", 1e-5, 1e5},
      {"price of a whole unit [US dollars]", "1", "price", 0.1, 1e7}},
-    {"sensor_cost", "Price of one gyro against its bias",
+    {"sensor_cost",
+     "Price of one gyro against its bias",
      "A published single number is drawn as a range of a factor of two to either side. One "
      "accelerometer of the commercial class costs about 1 dollar [ELSHEIMY2020]; no other price of "
      "one accelerometer was found.",
