@@ -110,9 +110,11 @@ case drift-navigation in
     *"$only"*) "$imukit" drift navigation --plot "$images/drift-navigation.svg" >"$images/.draw.log" ;;
 esac
 
-case grade-gyro in
-    *"$only"*)
-        "$imukit" grade navigation HG1700 tactical --map gyro --plot "$images/grade-gyro.svg" \
-            >"$images/.draw.log"
-        ;;
-esac
+for map in gyro accel cost sensor-cost; do
+    case grade-$map in
+        *"$only"*)
+            "$imukit" grade navigation HG1700 tactical --map "$map" \
+                --plot "$images/grade-$map.svg" >"$images/.draw.log"
+            ;;
+    esac
+done

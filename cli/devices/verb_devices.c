@@ -6,6 +6,7 @@
 #include "imukit/device_sensitivity.h"
 #include "imukit/model_file.h"
 #include "imukit/names.h"
+#include "imukit/show.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -145,6 +146,7 @@ static void show_data(const subject *s, const imk_model *model, imk_result *resu
                 imk_result_null(result, headlines[k].title);
         imk_result_end(result);
     }
+    imk_show_build(imk_device_build_find(s->name), result);
     show_sensitivities_data(s->name, result);
     imk_result_end(result);
 }
@@ -160,18 +162,36 @@ static void show_row(const subject *s, const imk_model *model, imk_table *table)
             imk_table_add(table, "%.4g", headline(model, k) / imk_unit_of(headlines[k].unit).scale);
         else
             imk_table_add(table, "-");
+    imk_show_build_cells(imk_device_build_find(s->name), table);
 }
 
 static imk_table *begin_table(imk_result *result)
 {
-    imk_table *table = imk_result_table(result, 0x3cU); /* the figures to the right */
+    imk_table *table = imk_result_table(result, 0x1fcU); /* the figures to the right */
     imk_table_row(table, "name\tclass");
     for (size_t k = 0; k < HEADLINES; k++)
         imk_table_add(table, "%s [%s]", headlines[k].title, headlines[k].unit);
+    imk_table_add(table, "size [mm]\tmass [g]\tsupply");
     imk_result_line(result, "\nOne entry with its source: imukit devices NAME\n"
                             "Simulate it: imukit simulate NAME --rate 100Hz --duration 1h -o "
                             "static.csv");
     return table;
+}
+
+/* As comments. */
+static void show_build_lines(const imk_device_build *b, imk_result *result)
+{
+    if (!b)
+        return;
+    if (b->size[0] > 0)
+        imk_result_line(result, "# size: %g x %g x %g mm", 1e3 * b->size[0], 1e3 * b->size[1],
+                        1e3 * b->size[2]);
+    if (b->mass > 0)
+        imk_result_line(result, "# mass: %g g", 1e3 * b->mass);
+    if (b->power > 0 || b->current > 0)
+        imk_result_line(result, "# supply: %s%g %s", b->is_limit ? "below " : "",
+                        1e3 * (b->power > 0 ? b->power : b->current), b->power > 0 ? "mW" : "mA");
+    imk_result_line(result, "# size, mass and supply from: %s", b->source);
 }
 
 static void show_entry(const subject *s, const imk_model *model, imk_result *result)
@@ -190,6 +210,7 @@ static void show_entry(const subject *s, const imk_model *model, imk_result *res
                     s->device->source);
     if (s->device->note[0])
         imk_result_line(result, "# note: %s", s->device->note);
+    show_build_lines(imk_device_build_find(s->name), result);
     show_sensitivities(s->name, result);
     (void)command_unless_memory(imk_model_print(model, NULL, &text, &size, NULL));
     if (size > 0)

@@ -20,8 +20,8 @@ typedef struct grade_options {
 
 static const option grade_option_table[] = {
     PLOT_OPTION(AT(plot), "draw the maps: bias stability against scale factor stability for gyros "
-                          "and for accelerometers, and cost against performance"),
-    {"map", OPTION_CHOICE, AT(map), .value = "WHICH", .choices = "all|gyro|accel|cost",
+                          "and for accelerometers, prices of units and of single gyros"),
+    {"map", OPTION_CHOICE, AT(map), .value = "WHICH", .choices = "all|gyro|accel|cost|sensor-cost",
      .help = "the map to draw; default: all, but gyro with --plot term"},
     REPORT_OPTION(AT(report), "write one self-contained page"),
     JSON_OPTION(AT(json), "print as JSON"),

@@ -59,6 +59,7 @@
 #include "imukit/spectrum.h"
 #include "imukit/static_detection.h"
 #include "imukit/status.h"
+#include "imukit/technology_map.h"
 #include "imukit/test_record.h"
 #include "imukit/thermal.h"
 #include "imukit/units.h"

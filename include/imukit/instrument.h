@@ -154,7 +154,7 @@ typedef struct imk_instrument_event {
 typedef struct imk_instrument {
     const char *name;       /**< name in design files: "ring_laser" */
     const char *title;      /**< "ring laser gyro" */
-    const char *technology; /**< name in the table of grades: "RLG"; "" if it is not there */
+    const char *technology; /**< name in the table of grades: "RLG" */
     const char *source;     /**< where the default design's figures come from */
     int sensor;             /**< IMK_GYRO or IMK_ACCEL */
     uint32_t cookie;        /**< value of the first member of a valid design */

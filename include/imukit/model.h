@@ -296,6 +296,21 @@ IMK_API const imk_device *imk_device_find(const char *name);
  *  give B. `device` must come from imk_device_get() or imk_device_find(), and not be a copy. */
 IMK_API void imk_device_model(const imk_device *device, imk_model *model);
 
+/** Size, mass and supply of a device of the catalogue, as read in a source. A figure of 0 was not
+ *  read anywhere. */
+typedef struct imk_device_build {
+    const char *device; /**< its name in the catalogue */
+    double size[3];     /**< [m] */
+    double mass;        /**< [kg] */
+    double power;       /**< [W] */
+    double current;     /**< of the supply [A], where the source states no power */
+    bool is_limit;      /**< power or current are upper limits */
+    const char *source;
+} imk_device_build;
+
+/** Build of a device by its name, compared as in imk_name_equal(); NULL when nothing was read. */
+IMK_API const imk_device_build *imk_device_build_find(const char *name);
+
 /* ---- grades ---------------------------------------------------------------------------------- */
 
 typedef enum imk_grade {

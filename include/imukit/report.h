@@ -39,6 +39,7 @@ typedef struct imk_region {
     int color; /**< index into the palette */
     double x_low, x_high, y_low, y_high;
     bool label_right;
+    bool dashed; /**< outline of dashes, for limits that are not certain */
 } imk_region;
 
 /** Where the key of a panel stands. */
@@ -61,6 +62,8 @@ typedef struct imk_panel {
     size_t region_count;
     const imk_region *regions;
     imk_key_place key;
+    const char
+        *note; /**< lines below the label of the x axis, separated by line feeds; NULL: none */
 } imk_panel;
 
 /** Panels on a grid, row by row. Panels are larger if regions have labels. The title is drawn only

@@ -19,6 +19,7 @@
 #include "imukit/record_plan.h"
 #include "imukit/result.h"
 #include "imukit/spectrum_log.h"
+#include "imukit/technology_map.h"
 
 IMK_BEGIN_C
 
@@ -61,19 +62,18 @@ IMK_API void imk_show_compensate_log(const imk_compensate_log *log, const char *
 IMK_API void imk_show_terms(const char *key, const char *label, const imk_term_keys *keys,
                             imk_result *result);
 
+/** Three cells of a table: size [mm], mass [g], and supply with its unit; "-" where nothing was
+ *  read. @param build  NULL: nothing was read */
+IMK_API void imk_show_build_cells(const imk_device_build *build, imk_table *table);
+/** Object "build" of a device, null when nothing was read. */
+IMK_API void imk_show_build(const imk_device_build *build, imk_result *result);
+
 /** Graded models with their names. */
 typedef struct imk_graded_several {
     size_t count;
     const imk_graded *const *graded;
     const char *const *name;
 } imk_graded_several;
-/** Maps of models among classes, technologies and applications. */
-typedef enum imk_grade_map {
-    IMK_GRADE_MAP_GYRO = 0, /**< bias stability against scale-factor stability */
-    IMK_GRADE_MAP_ACCEL,
-    IMK_GRADE_MAP_COST, /**< cost against performance */
-    IMK_GRADE_MAPS      /**< all of them */
-} imk_grade_map;
 /** True when a model states enough for a map; with IMK_GRADE_MAPS, for any map. */
 IMK_API bool imk_grade_stands(const imk_graded_several *r, imk_grade_map map);
 /** Show classes, position errors, what limits them, and maps. @param map  the one to plot */

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The five classes of inertial units, and the class of a model by its biases. */
+/* The five classes of inertial units, and the class of a model by its biases. The table as commonly
+ * printed names no spinning wheels but the suspended one: "floated", "DTG" and "wheel" are our
+ * addition, by the regions of technology_map.c. */
 #include "imukit/model.h"
 
 #include <math.h>
@@ -11,15 +13,15 @@
 #define NO_CLAIM ((double)NAN)
 
 static const imk_grade_row grade_rows[] = {
-    {"strategic", "1 nmi / 24 h", "ESG, RLG, FOG", "servo", 0.005 * DEGREES_PER_HOUR, 30 * MICRO_G,
-     NAUTICAL_MILE, 24 * HOUR},
-    {"navigation", "1 nmi / h", "RLG, FOG", "servo, vibrating beam", 0.01 * DEGREES_PER_HOUR,
-     50 * MICRO_G, NAUTICAL_MILE, HOUR},
-    {"tactical", "> 10 nmi / h", "RLG, FOG", "servo, vibrating beam, MEMS", 1 * DEGREES_PER_HOUR,
-     1000 * MICRO_G, (double)INFINITY, HOUR},
-    {"AHRS", "n/a", "MEMS, RLG, FOG, Coriolis", "MEMS", 10 * DEGREES_PER_HOUR, 1000 * MICRO_G,
+    {"strategic", "1 nmi / 24 h", "ESG, floated, RLG, FOG", "servo", 0.005 * DEGREES_PER_HOUR,
+     30 * MICRO_G, NAUTICAL_MILE, 24 * HOUR},
+    {"navigation", "1 nmi / h", "floated, DTG, RLG, FOG", "servo, vibrating beam",
+     0.01 * DEGREES_PER_HOUR, 50 * MICRO_G, NAUTICAL_MILE, HOUR},
+    {"tactical", "> 10 nmi / h", "DTG, RLG, FOG", "servo, vibrating beam, MEMS",
+     1 * DEGREES_PER_HOUR, 1000 * MICRO_G, (double)INFINITY, HOUR},
+    {"AHRS", "n/a", "DTG, MEMS, RLG, FOG, Coriolis", "MEMS", 10 * DEGREES_PER_HOUR, 1000 * MICRO_G,
      NO_CLAIM, NO_CLAIM},
-    {"control system", "n/a", "Coriolis", "MEMS", 1000 * DEGREES_PER_HOUR, 10000 * MICRO_G,
+    {"control system", "n/a", "wheel, Coriolis", "MEMS", 1000 * DEGREES_PER_HOUR, 10000 * MICRO_G,
      NO_CLAIM, NO_CLAIM},
 };
 

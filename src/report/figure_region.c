@@ -4,7 +4,6 @@
 
 #include <stdio.h>
 
-enum { PLACED_MAX = 64 }; /* names that others keep clear of */
 static const double font_size = 10, row = 13, inset = 5, mark = 7;
 
 /* A limit that cannot be drawn, such as infinity, becomes the limit of the frame. */
@@ -33,10 +32,11 @@ void imki_regions_draw(imki_text *out, const imki_frame *frame, const imk_panel 
             continue;
         imki_text_add(out,
                       "<rect x=\"%ld\" y=\"%ld\" width=\"%ld\" height=\"%ld\" fill=\"%s\" "
-                      "fill-opacity=\"0.12\" stroke=\"%s\" stroke-width=\"8\"/>\n",
+                      "fill-opacity=\"%s\" stroke=\"%s\" stroke-width=\"8\"%s/>\n",
                       imki_tenths(box.left), imki_tenths(box.top),
                       imki_tenths(box.right - box.left), imki_tenths(box.bottom - box.top), color,
-                      color);
+                      panel->regions[r].dashed ? "0.05" : "0.12", color,
+                      panel->regions[r].dashed ? " stroke-dasharray=\"50 35\"" : "");
     }
 }
 
@@ -57,39 +57,45 @@ static void find_room(imki_box *name, const imki_box *placed, size_t count, doub
 }
 
 /* Marks that names keep clear of, too. */
-static size_t place_marks(const imki_frame *f, const imk_panel *panel, imki_box placed[PLACED_MAX])
+imki_placer imki_placer_make(const imki_frame *f, const imk_panel *panel)
 {
-    size_t count = 0;
+    imki_placer placer = {.count = 0};
     for (size_t c = 0; c < panel->curve_count; c++) {
         const imk_curve *curve = &panel->curves[c];
         if (curve->style != IMK_CURVE_MARKS)
             continue;
-        for (size_t i = 0; i < curve->count && count < PLACED_MAX / 2; i++) {
+        for (size_t i = 0; i < curve->count && placer.count < IMKI_PLACED_MAX / 2; i++) {
             if (!imki_drawable(curve->x[i], f->x.logarithmic) ||
                 !imki_drawable(curve->y[i], f->y.logarithmic))
                 continue;
             const double x = imki_frame_x(f, curve->x[i]), y = imki_frame_y(f, curve->y[i]);
-            placed[count++] = (imki_box){x - mark, y - mark, x + mark, y + mark};
+            placer.placed[placer.count++] = (imki_box){x - mark, y - mark, x + mark, y + mark};
         }
     }
-    return count;
+    return placer;
+}
+
+imki_box imki_region_place(imki_placer *placer, const imki_frame *frame, const imk_region *region)
+{
+    const imki_box box = box_of(frame, region);
+    const double width = imki_line_width(region->label, font_size);
+    const double room = frame->right - frame->left - 2 * inset;
+    double left = region->label_right ? box.right - inset - width : box.left + inset;
+    left = fmax(frame->left + inset, fmin(frame->right - inset - width, left));
+    imki_box name = {left, box.top + 3, left + fmin(width, room), box.top + 3 + row};
+    find_room(&name, placer->placed, placer->count, frame->bottom);
+    if (placer->count < IMKI_PLACED_MAX)
+        placer->placed[placer->count++] = name;
+    return name;
 }
 
 void imki_region_labels_draw(imki_text *out, const imki_frame *frame, const imk_panel *panel)
 {
-    imki_box placed[PLACED_MAX];
-    size_t count = place_marks(frame, panel, placed);
+    imki_placer placer = imki_placer_make(frame, panel);
+    const double room = frame->right - frame->left - 2 * inset;
     for (size_t r = 0; r < panel->region_count; r++) {
         const imk_region *region = &panel->regions[r];
-        const imki_box box = box_of(frame, region);
-        const double width = imki_line_width(region->label, font_size);
-        const double room = frame->right - frame->left - 2 * inset;
-        double left = region->label_right ? box.right - inset - width : box.left + inset;
-        left = fmax(frame->left + inset, fmin(frame->right - inset - width, left));
-        imki_box name = {left, box.top + 3, left + fmin(width, room), box.top + 3 + row};
-        find_room(&name, placed, count, frame->bottom);
-        if (count < PLACED_MAX)
-            placed[count++] = name;
+        const imki_box name = imki_region_place(&placer, frame, region);
         char color[16];
         snprintf(color, sizeof color, " fill=\"%s\"", imki_color(region->color));
         imki_svg_line(out, name.left, name.bottom - 3, IMKI_START, font_size, room, color,

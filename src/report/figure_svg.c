@@ -9,11 +9,14 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* [px] */
 enum {
     TITLE_SIZE = 12,
     LABEL_SIZE = 12,
+    NOTE_SIZE = 10,
+    NOTE_ROW = 14,
     PANEL_TOP = 34, /* above a frame, with its title */
     SINGLE_TOP = 44,
     RIGHT = 22,
@@ -54,6 +57,15 @@ static double width_of(const imki_tick *tick, double font_size)
     return imki_line_width(tick->text, font_size) + imki_line_width(tick->power, 0.75 * font_size);
 }
 
+/* The lines of a panel's note. */
+static size_t note_lines(const imk_panel *panel)
+{
+    size_t count = panel->note && panel->note[0] ? 1 : 0;
+    for (const char *c = count > 0 ? strchr(panel->note, '\n') : NULL; c; c = strchr(c + 1, '\n'))
+        count++;
+    return count;
+}
+
 /* ---- layout ---------------------------------------------------------------------------------- */
 
 static bool is_beside(const sheet *s, const imk_panel *panel)
@@ -74,6 +86,7 @@ static void lay_out_key(const sheet *s, const imk_panel *panel, layout *l)
     l->below = TICK_GAP + s->tick_size + 12;
     if (panel->x_label && panel->x_label[0])
         l->below += LABEL_SIZE + 6;
+    l->below += NOTE_ROW * (double)note_lines(panel);
     if (is_beside(s, panel))
         l->key = imki_key_make(panel, font_size, 0.4 * width, 0.8 * height, 1);
     else if (panel->key == IMK_KEY_BELOW)
@@ -307,6 +320,20 @@ static void make_x_ticks(const imki_frame *f, double font_size, imki_ticks *tick
 
 /* ---- a panel --------------------------------------------------------------------------------- */
 
+/* Each line of the note, below the label of the axis. */
+static void put_note(imki_text *out, const imk_panel *panel, const layout *l, double y)
+{
+    const imki_frame *f = &l->frame;
+    const double room = l->cell.right - f->left - 8;
+    char line[400];
+    for (const char *c = note_lines(panel) > 0 ? panel->note : NULL; c; y += NOTE_ROW) {
+        const char *end = strchr(c, '\n');
+        snprintf(line, sizeof line, "%.*s", end ? (int)(end - c) : (int)strlen(c), c);
+        imki_svg_line(out, f->left, y, IMKI_START, NOTE_SIZE, room, "", line);
+        c = end ? end + 1 : NULL;
+    }
+}
+
 static void put_names(imki_text *out, const imk_panel *panel, const layout *l, double font_size)
 {
     const imki_frame *f = &l->frame;
@@ -315,8 +342,9 @@ static void put_names(imki_text *out, const imk_panel *panel, const layout *l, d
     const double room = 2 * fmin(middle - l->cell.left, l->cell.right - middle) - 8;
     char turned[60];
     imki_svg_line(out, middle, f->top - 12, IMKI_MIDDLE, TITLE_SIZE, room, "", panel->title);
-    imki_svg_line(out, middle, f->bottom + TICK_GAP + font_size + 9 + LABEL_SIZE, IMKI_MIDDLE,
-                  LABEL_SIZE, room, "", panel->x_label);
+    const double below = f->bottom + TICK_GAP + font_size + 9 + LABEL_SIZE;
+    imki_svg_line(out, middle, below, IMKI_MIDDLE, LABEL_SIZE, room, "", panel->x_label);
+    put_note(out, panel, l, below + 4 + NOTE_ROW);
     snprintf(turned, sizeof turned, " transform=\"rotate(-90 %ld %ld)\"", imki_tenths(x),
              imki_tenths(height));
     imki_svg_line(out, x, height, IMKI_MIDDLE, LABEL_SIZE, f->bottom - f->top + 30, turned,

@@ -211,6 +211,7 @@ void imk_figure_panel(imk_figure_builder *figure, const imk_panel *panel)
     made->title = imki_arena_text(arena, panel->title);
     made->x_label = imki_arena_text(arena, panel->x_label);
     made->y_label = imki_arena_text(arena, panel->y_label);
+    made->note = panel->note ? imki_arena_text(arena, panel->note) : NULL;
     made->curve_count = made->region_count = 0;
     made->curves = NULL;
     made->regions = NULL;

@@ -2,6 +2,8 @@
 /* imukit grade: classes by biases and by computed positions, claims beside figures, maps. */
 #include "run_command.h"
 
+#include "imukit/technology_map.h"
+
 #include <math.h>
 
 static const double mile = 1852;
@@ -148,7 +150,7 @@ static void test_claims_beside_figures(void **state)
     assert_int_equal(run("$I grade navigation"), 0);
     check_contains(out, "navigation: navigation\nGyro: navigation; remaining bias ", out);
     check_contains(out, "\nPosition: navigation; CEP 0.7", out);
-    check_contains(out, "nmi, met  0.01, met     RLG, FOG ", out);
+    check_contains(out, "nmi, met  0.01, met     floated, DTG, RLG, FOG ", out);
     check_contains(out, "\nFor strategic (1 nmi / 24 h) every term would have to be ", out);
     check_contains(out, "at rest at 45 deg N", out);
     assert_int_equal(run("$I grade control"), 0);
@@ -194,20 +196,126 @@ static void test_maps(void **state)
     assert_int_equal(run("$I grade tactical HG1700 --plot m.svg --report r.html"), 0);
     read_text("m.svg", out);
     check_contains(out, "aircraft, survey", "map");
-    check_contains(out, "HG1700, scale factor not stated", "map");
-    check_contains(out, "cost of a unit [dollars]", "map");
+    check_contains(out, "floated", "map");
+    check_contains(out, "DTG", "map");
+    check_contains(out, "price of a whole unit [US dollars]", "map");
+    check_contains(out, "price of one gyro [US dollars]", "map");
     read_text("r.html", out);
     check_contains(out, "[ELSHEIMY2020] table 1", "page");
     check_contains(out, "[YAZDI1998] table 1", "page");
+    check_contains(out, "from memory, each within a factor of 10", "page");
+    check_contains(out, "undated", "page");
     check_contains(out, "Comparison", "page");
-    put("g.yaml", "imukit: 1\ngyro: {bias: {repeatability: 0.01 deg/h}}\n");
-    assert_int_equal(run("$I grade g.yaml --map cost --plot c.svg"), 1);
+    put("a.yaml", "imukit: 1\naccel: {bias: {repeatability: 1 mg}}\n");
+    assert_int_equal(run("$I grade a.yaml --map cost --plot c.svg"), 1);
     check_contains(err, "--map: the model has no value for this map", err);
     assert_int_equal(access("c.svg", F_OK), -1);
     if (imk_plot_available()) {
         assert_int_equal(run("$I grade tactical --plot term"), 0);
         check_contains(out, "stability of the scale factor [ppm]", "term");
     }
+    sweep();
+}
+
+/* A unit's price and a sensor's are never in one figure. */
+static void test_prices_are_apart(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I grade tactical --map cost --plot c.svg"), 0);
+    read_text("c.svg", out);
+    check_contains(out, "Prices of whole units only.", "map");
+    check_contains(out, "MEMS, HG4930", "map");
+    assert_null(strstr(out, "one gyro"));
+    assert_int_equal(run("$I grade tactical --map sensor-cost --plot c.svg"), 0);
+    read_text("c.svg", out);
+    check_contains(out, "Prices of single gyros only.", "map");
+    assert_null(strstr(out, "whole unit"));
+    assert_null(strstr(out, "HG4930"));
+    sweep();
+}
+
+/* That a place means nothing stands on the map itself, for what is not stated, zero, and outside;
+ * a model that has its place is not named. */
+static void test_note_is_on_the_map(void **state)
+{
+    (void)state;
+    put("z.yaml", "imukit: 1\ngyro: {bias: {repeatability: 2 deg/h}, scale_factor: {repeatability: "
+                  "0 ppm}}\naccel: {scale_factor: {repeatability: 30 ppm}}\n");
+    put("o.yaml", "imukit: 1\ngyro: {bias: {repeatability: 1e-9 deg/h}, scale_factor: "
+                  "{repeatability: 90 %}}\n");
+    assert_int_equal(run("$I grade tactical z.yaml o.yaml HG1700 --map gyro --plot m.svg"), 0);
+    read_text("m.svg", out);
+    check_contains(out, "Dashed outlines: limits from memory; each may be wrong by a factor of ten",
+                   "map");
+    check_contains(out, "ESG, at the left edge, has no scale factor: its place", "map");
+    check_contains(out,
+                   ">HG1700 states no scale factor: a dashed line, whose place along that axis "
+                   "means nothing.<",
+                   "map");
+    check_contains(out, ">z.yaml states no scale factor: a dashed line", "map");
+    check_contains(out, ">o.yaml has its bias outside the map: drawn at the edge", "map");
+    check_contains(out, ">o.yaml has its scale factor outside the map: drawn at the edge", "map");
+    assert_null(strstr(out, ">tactical states"));
+    assert_null(strstr(out, ">tactical has"));
+    assert_int_equal(run("$I grade tactical z.yaml o.yaml --map accel --plot m.svg"), 0);
+    read_text("m.svg", out);
+    check_contains(out, ">z.yaml states no bias: a dashed line", "map");
+    check_contains(out, ">o.yaml states no scale factor and no bias: it is not on this map.<",
+                   "map");
+    sweep();
+}
+
+static json_t *member(json_t *object, const char *a, const char *b)
+{
+    return json_object_get(json_object_get(object, a), b);
+}
+
+/* As data: the regions of the library, the places of the models, and what a device measures. */
+static void test_maps_as_data(void **state)
+{
+    (void)state;
+    static const char *const keys[IMK_GRADE_MAPS] = {"gyro", "accel", "cost", "sensor_cost"};
+    json_t *models = models_of("$I grade tactical HG1700 STIM300 --json");
+    json_t *maps = member(document, "result", "maps");
+    for (int map = 0; map < IMK_GRADE_MAPS; map++) {
+        json_t *regions = member(maps, keys[map], "regions");
+        const size_t count = imk_map_region_count((imk_grade_map)map);
+        assert_int_equal(json_array_size(regions), count);
+        for (size_t i = 0; i < count; i++) {
+            const imk_map_region *of = imk_map_region_get((imk_grade_map)map, i);
+            json_t *region = json_array_get(regions, i);
+            assert_string_equal(word(region, "name"), of->name);
+            assert_string_equal(word(region, "source"), of->source);
+            assert_true(json_number_value(member(region, "y", "high")) == of->y_high);
+            assert_int_equal(json_is_null(json_object_get(region, "x")), isnan(of->x_low));
+            assert_int_equal(json_is_true(json_object_get(region, "from_memory")), of->doubt > 1);
+        }
+    }
+    json_t *places = json_object_get(json_array_get(models, 1), "places");
+    assert_string_equal(word(json_object_get(places, "gyro"), "x"), "not stated");
+    assert_string_equal(word(json_object_get(places, "gyro"), "y"), "stated");
+    assert_true(json_is_true(member(places, "gyro", "drawn")));
+    assert_string_equal(word(json_object_get(places, "cost"), "y"), "not stated");
+    json_t *size = json_object_get(member(json_array_get(models, 2), "build", "size"), "value");
+    CHECK_RELATIVE(json_number_value(json_array_get(size, 1)), 0.0448, 1e-12);
+    assert_true(json_is_null(json_object_get(json_array_get(models, 0), "build")));
+    json_decref(document);
+    sweep();
+}
+
+/* The catalogue and the comparison show what was read of size, mass and supply. */
+static void test_builds_are_shown(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I devices VN-100"), 0);
+    check_contains(out, "\n# size: 24 x 22 x 3 mm\n# mass: 3.5 g\n# supply: below 105 mW\n", out);
+    assert_int_equal(run("$I devices bmi"), 0);
+    check_contains(out, "size [mm]  mass [g]   supply\n", out);
+    check_contains(out, "2.5 x 3 x 0.8         -  0.95 mA\n", out);
+    assert_int_equal(run("$I grade STIM300 tactical"), 0);
+    check_contains(out, "\nSTIM300  38.6 x 44.8 x 21.5         -       -  data sheet TS1524", out);
+    assert_int_equal(run("$I grade tactical"), 0);
+    assert_null(strstr(out, "size [mm]"));
     sweep();
 }
 
@@ -219,6 +327,10 @@ int main(void)
                                        cmocka_unit_test(test_compensation),
                                        cmocka_unit_test(test_claims_beside_figures),
                                        cmocka_unit_test(test_parts_of_a_unit),
-                                       cmocka_unit_test(test_maps)};
+                                       cmocka_unit_test(test_maps),
+                                       cmocka_unit_test(test_prices_are_apart),
+                                       cmocka_unit_test(test_note_is_on_the_map),
+                                       cmocka_unit_test(test_maps_as_data),
+                                       cmocka_unit_test(test_builds_are_shown)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -206,8 +206,8 @@ enum { POINTS = 40, CURVES = 6 };
 
 static double across[POINTS], value[POINTS], lower[POINTS], upper[POINTS];
 static imk_curve curves[CURVES];
-static const imk_region regions[] = {{"left < region", 2, 0.1, 10, 0.02, 1, false},
-                                     {"right & region", 3, 1, 1e3, 0.3, 1e4, true}};
+static const imk_region regions[] = {{"left < region", 2, 0.1, 10, 0.02, 1, false, false},
+                                     {"right & region", 3, 1, 1e3, 0.3, 1e4, true, true}};
 
 static imk_panel everything(imk_key_place key)
 {
@@ -231,7 +231,8 @@ static imk_panel everything(imk_key_place key)
                        .curves = curves,
                        .region_count = 2,
                        .regions = regions,
-                       .key = key};
+                       .key = key,
+                       .note = "first <note>\nsecond & last"};
 }
 
 /* All styles, in one panel and in several, with the key in each place: well-formed, each text there
@@ -254,7 +255,8 @@ static void test_everything_is_drawn(void **state)
             assert_int_equal(find(d, "whole > part") != NULL, panels > 1);
             static const char *const texts[] = {
                 "title <svg>",    "x & y",          "]]> 'y'", "left < region",
-                "right & region", "<b>&amp; \"x\"", "az",      "gr\xEF\xBF\xBD\xEF\xBF\xBD"};
+                "right & region", "<b>&amp; \"x\"", "az",      "gr\xEF\xBF\xBD\xEF\xBF\xBD",
+                "first <note>",   "second & last"};
             for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
                 assert_non_null(find(d, texts[i]));
             for (size_t i = 0; i < d->labels; i++) {
@@ -465,8 +467,8 @@ static void test_hard_numbers(void **state)
 static void test_open_region(void **state)
 {
     (void)state;
-    const imk_region open[] = {{"open", 0, 1, HUGE_VAL, 0, 10, false},
-                               {"closed", 0, 1, 2, 1, 2, false}};
+    const imk_region open[] = {{"open", 0, 1, HUGE_VAL, 0, 10, false, false},
+                               {"closed", 0, 1, 2, 1, 2, false, false}};
     char *svg;
     size_t size;
     const imk_panel panel = {

@@ -89,7 +89,7 @@ static void put_display(imk_result *r)
     imk_figure_curve(figure, &(imk_curve){.label = "bars"}, 1);
     for (int i = 0; i < 5; i++)
         imk_figure_bar(figure, i, 2 * i, 2 * i - 1, 2 * i + 1);
-    imk_figure_region(figure, &(imk_region){"r", 1, 0, 1, 0, 1, false});
+    imk_figure_region(figure, &(imk_region){"r", 1, 0, 1, 0, 1, false, true});
 }
 
 static const char expected_text[] = "Head\nA warning & more.\nonly on the terminal\n\n"

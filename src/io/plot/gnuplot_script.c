@@ -11,6 +11,9 @@
 #include "imukit/decimal.h"
 #include "imukit/utf8.h"
 
+#include <stdio.h>
+#include <string.h>
+
 /* Text in single quotes, where a quote is doubled and nothing else is special; control characters
  * become blanks, and bytes that are no UTF-8 its replacement character. */
 static void quote(imki_text *out, const char *text)
@@ -77,11 +80,52 @@ static void close_ticks(imki_text *out, const char *name, const imki_axis *axis)
     imki_text_put(out, ")\n");
 }
 
-static void write_axis(imki_text *out, const char *name, const char *label, const imki_axis *axis,
-                       bool text_terminal)
+enum { NOTE_WIDEST = 84 };
+
+static size_t note_width(const imki_drawing *drawing)
 {
+    const int room = drawing->width - 4;
+    return drawing->terminal == IMKI_TERMINAL_TEXT && room < NOTE_WIDEST
+               ? room > 20 ? (size_t)room : 20
+               : NOTE_WIDEST;
+}
+
+/* The next line of a note, broken at a blank where it is too long: gnuplot breaks no labels.
+ * @return false at the end */
+static bool next_line(const char **note, size_t widest, char line[NOTE_WIDEST + 1])
+{
+    const char *c = *note ? *note : "";
+    size_t length = strcspn(c, "\n");
+    if (*c == '\0')
+        return false;
+    if (length > widest) {
+        length = widest;
+        while (length > 1 && c[length] != ' ')
+            length--;
+        length = c[length] == ' ' ? length : widest;
+    }
+    snprintf(line, NOTE_WIDEST + 1, "%.*s", (int)length, c);
+    *note = c + length + (c[length] == '\n' || c[length] == ' ');
+    return true;
+}
+
+/* Further lines of a label; a quoted line cannot hold a line feed. */
+static void write_note(imki_text *out, const char *note, size_t widest)
+{
+    char line[NOTE_WIDEST + 1];
+    while (next_line(&note, widest, line)) {
+        imki_text_put(out, ".\"\\n\".");
+        quote(out, line);
+    }
+}
+
+static void write_axis(imki_text *out, const char *name, const char *label, const char *note,
+                       const imki_axis *axis, const imki_drawing *drawing)
+{
+    const bool text_terminal = drawing->terminal == IMKI_TERMINAL_TEXT;
     imki_text_add(out, "set %slabel ", name);
     quote(out, label);
+    write_note(out, note, note_width(drawing));
     imki_text_add(out, " noenhanced\nset %stics autofreq\n", name);
     if (axis->logarithmic)
         imki_text_add(out, "set logscale %s 10\nset m%stics 10\nset format %s '%s'\n", name, name,
@@ -152,33 +196,58 @@ static void corner(imki_text *out, double x, double y)
     number(out, y);
 }
 
-/* Rectangles are for drawings only: made of letters they would hide the points. */
-static void write_regions(imki_text *out, const imk_panel *panel, bool text)
+static void write_rectangle(imki_text *out, size_t number_of, const imk_region *region)
 {
+    const char *color = imki_color(region->color);
+    imki_text_add(out, "set object %zu rectangle from ", number_of);
+    corner(out, region->x_low, region->y_low);
+    imki_text_put(out, " to ");
+    corner(out, region->x_high, region->y_high);
+    imki_text_add(out,
+                  " behind fillcolor rgb '%s' fillstyle transparent solid %s border "
+                  "linecolor rgb '%s'%s\n",
+                  color, region->dashed ? "0.05" : "0.12", color,
+                  region->dashed ? " dashtype '-'" : "");
+}
+
+/* The frame as our own drawing would have it, in which names are placed: gnuplot does not tell the
+ * size of its frame. A letter of a terminal is as large as one of a name. */
+static imki_frame nominal_frame(const imk_panel *panel, const imki_drawing *drawing)
+{
+    const bool text = drawing->terminal == IMKI_TERMINAL_TEXT;
+    const double letter = 6.2, line = 13, margin = 15;
+    const char *note = panel->note;
+    char noted[NOTE_WIDEST + 1];
+    int lines = 8;
+    while (next_line(&note, note_width(drawing), noted))
+        lines++;
+    imki_frame frame = {.right = text ? (drawing->width - margin) * letter : 740,
+                        .bottom = text ? (drawing->height - lines) * line : 400};
+    imki_panel_axes(panel, &frame.x, &frame.y);
+    return frame;
+}
+
+/* Rectangles are for drawings only: made of letters they would hide the points. */
+static void write_regions(imki_text *out, const imk_panel *panel, const imki_drawing *drawing)
+{
+    const bool text = drawing->terminal == IMKI_TERMINAL_TEXT;
+    const imki_frame frame = nominal_frame(panel, drawing);
+    imki_placer placer = imki_placer_make(&frame, panel);
     imki_text_put(out, "unset object\nunset label\n");
     for (size_t r = 0; r < panel->region_count; r++) {
         const imk_region *region = &panel->regions[r];
-        const char *color = imki_color(region->color);
-        if (!text) {
-            imki_text_add(out, "set object %zu rectangle from ", r + 1);
-            corner(out, region->x_low, region->y_low);
-            imki_text_put(out, " to ");
-            corner(out, region->x_high, region->y_high);
-            imki_text_add(out,
-                          " behind fillcolor rgb '%s' fillstyle transparent solid 0.12 border "
-                          "linecolor rgb '%s'\n",
-                          color, color);
-        }
+        const imki_box name = imki_region_place(&placer, &frame, region);
+        if (!text)
+            write_rectangle(out, r + 1, region);
         imki_text_add(out, "set label %zu ", r + 1);
         quote(out, region->label);
-        imki_text_put(out, " at ");
-        corner(out, region->label_right ? region->x_high : region->x_low, region->y_high);
-        imki_text_add(out, " %s noenhanced", region->label_right ? "right" : "left");
+        imki_text_put(out, " at graph ");
+        const bool right = region->label_right;
+        corner(out, round(1e4 * (right ? name.right : name.left) / frame.right) / 1e4,
+               round(1e4 * (1 - (name.top + name.bottom) / 2 / frame.bottom)) / 1e4);
+        imki_text_add(out, " %s noenhanced", right ? "right" : "left");
         if (!text)
-            imki_text_add(out, " offset character %s,-0.7 font ',10' textcolor rgb '%s'",
-                          region->label_right ? "-0.5" : "0.5", color);
-        else if (region->label_right) /* a line below the names on the left */
-            imki_text_put(out, " offset character 0,-1");
+            imki_text_add(out, " font ',10' textcolor rgb '%s'", imki_color(region->color));
         imki_text_put_char(out, '\n');
     }
 }
@@ -205,9 +274,9 @@ static void write_panel(imki_text *out, const imk_panel *panel, size_t first_ind
     imki_text_put(out, "set title ");
     quote(out, panel->title);
     imki_text_put(out, " noenhanced\n");
-    write_axis(out, "x", panel->x_label, &x, text);
-    write_axis(out, "y", panel->y_label, &y, text);
-    write_regions(out, panel, text);
+    write_axis(out, "x", panel->x_label, panel->note, &x, drawing);
+    write_axis(out, "y", panel->y_label, NULL, &y, drawing);
+    write_regions(out, panel, drawing);
     if (!text)
         write_key(out, panel->key, single);
     const char *separator = "plot ";
@@ -269,7 +338,8 @@ static void write_style(imki_text *out, const imk_figure *figure, const imki_dra
 char *imki_figure_script(const imk_figure *figure, const imki_drawing *drawing, size_t *size)
 {
     imki_text text = {.bytes = NULL}, *out = &text;
-    imki_text_put(out, "set encoding utf8\n");
+    /* A line whose ends are outside, as one across a map, is drawn where it crosses the frame. */
+    imki_text_put(out, "set encoding utf8\nset clip two\n");
     write_terminal(out, figure, drawing);
     write_style(out, figure, drawing);
     const imki_figure_size grid = imki_figure_measure(figure);

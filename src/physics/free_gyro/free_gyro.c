@@ -368,7 +368,7 @@ IMKI_DESIGN_FUNCTIONS(free_gyro);
 const imk_instrument imk_free_gyro_instrument = {
     IMKI_DESCRIBED(free_gyro),
     .title = "free gyro",
-    .technology = "",
+    .technology = "wheel",
     .source = "wheel speed and travel of an electric attitude gyro (training notes, "
               "flyingpilots.com p=264); inertias, friction and torques chosen: free_gyro.h",
     .sensor = IMK_GYRO,

@@ -108,7 +108,7 @@ IMKI_DESIGN_FUNCTIONS(rate_gyro);
 const imk_instrument imk_rate_gyro_instrument = {
     IMKI_DESCRIBED(rate_gyro),
     .title = "spring-restrained rate gyro",
-    .technology = "",
+    .technology = "wheel",
     .source = "figures chosen, of the size of miniature torsion-bar rate gyros; see rate_gyro.h",
     .sensor = IMK_GYRO,
     .cookie = COOKIE,

@@ -127,7 +127,7 @@ IMKI_DESIGN_FUNCTIONS(rate_integrating_gyro);
 const imk_instrument imk_rate_integrating_gyro_instrument = {
     IMKI_DESCRIBED(rate_integrating_gyro),
     .title = "floated rate-integrating gyro",
-    .technology = "",
+    .technology = "floated",
     .source =
         "drift of the floated gyros in R. A. Harris, Navigation 21 (1974); dimensions chosen, see "
         "rate_integrating_gyro.h",

@@ -174,7 +174,7 @@ IMKI_DESIGN_FUNCTIONS(tuned_gyro);
 const imk_instrument imk_tuned_gyro_instrument = {
     IMKI_DESCRIBED(tuned_gyro),
     .title = "dynamically tuned gyro",
-    .technology = "",
+    .technology = "DTG",
     .source = "figures chosen, of the size of small strapdown tuned gyros; see tuned_gyro.h",
     .sensor = IMK_GYRO,
     .cookie = COOKIE,

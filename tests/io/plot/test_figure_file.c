@@ -33,8 +33,9 @@ static int set_up(void **state)
     curves[0] = (imk_curve){"gyro_x's", IMK_CURVE_POINTS, 0, POINTS, tau, deviation, lower, upper};
     curves[1] = (imk_curve){"fit", IMK_CURVE_DASHES, 1, POINTS, tau, line, NULL, NULL};
     curves[2] = (imk_curve){"", IMK_CURVE_BAND, 2, POINTS, tau, deviation, lower, upper};
-    panel = (imk_panel){"a_b `id` $x", "tau [s]",    "deviation [deg/h]", true, true, 3, curves, 0,
-                        NULL,          IMK_KEY_UPPER};
+    panel =
+        (imk_panel){"a_b `id` $x", "tau [s]", "deviation [deg/h]", true, true, 3, curves, 0, NULL,
+                    IMK_KEY_UPPER, NULL};
     figure = (imk_figure){"title", 1, 1, &panel};
     return mkdtemp(directory) ? 0 : -1;
 }
@@ -144,8 +145,8 @@ static void test_draws_every_kind(void **state)
 static void test_regions(void **state)
 {
     (void)state;
-    const imk_region regions[] = {{"fibre's", 0, 1e-3, 1e2, 0.1, 1e3, false},
-                                  {"ring laser", 1, 1e-4, 1, 1, 20, true}};
+    const imk_region regions[] = {{"fibre's", 0, 1e-3, 1e2, 0.1, 1e3, false, false},
+                                  {"ring laser", 1, 1e-4, 1, 1, 20, true, true}};
     static const double at[] = {0.01};
     const imk_curve mark = {
         .label = "mine", .style = IMK_CURVE_MARKS, .count = 1, .x = at, .y = at};
@@ -157,7 +158,8 @@ static void test_regions(void **state)
                            .curve_count = 1,
                            .curves = &mark,
                            .region_count = 2,
-                           .regions = regions};
+                           .regions = regions,
+                           .note = "the first \"note\"\nit's another"};
     const imk_panel two[] = {map, map};
     const imk_figure drawn = {.title = "", .panel_count = 1, .columns = 1, .panels = &map};
     const imk_figure large = {.title = "", .panel_count = 2, .columns = 2, .panels = two};
@@ -166,8 +168,14 @@ static void test_regions(void **state)
     char *script = imki_figure_script(&drawn, &drawing, &size);
     assert_non_null(script);
     assert_non_null(strstr(script, "set object 2 rectangle from 0.0001,1 to 1,20 "));
-    assert_non_null(strstr(script, "set label 1 'fibre''s' at 0.001,1000 left "));
-    assert_non_null(strstr(script, "set label 2 'ring laser' at 1,20 right "));
+    assert_non_null(strstr(script, "solid 0.05 border linecolor rgb '#d55e00' dashtype '-'\n"));
+    /* Names are placed as in our own drawings, where none covers another or a mark. */
+    assert_non_null(strstr(script, "set label 1 'fibre''s' at graph 0."));
+    assert_non_null(strstr(script, "set label 2 'ring laser' at graph 0."));
+    assert_non_null(strstr(script, " right noenhanced font ',10' textcolor rgb '#d55e00'"));
+    assert_non_null(strstr(
+        script, "set xlabel 'bias'.\"\\n\".'the first \"note\"'.\"\\n\".'it''s another' noen"));
+    assert_non_null(strstr(script, "set ylabel 'scale' noenhanced"));
     /* The mark at 0.01 is below both regions: the axis reaches down to it. */
     assert_non_null(strstr(script, "set yrange [0.004"));
     assert_non_null(strstr(script, "with points pointtype 13 "));
@@ -186,7 +194,7 @@ static void test_refuses_what_cannot_be_drawn(void **state)
     assert_non_null(strstr(error.expected, ".svg"));
     double nothing[POINTS] = {0}; /* no logarithm */
     imk_curve curve = {"", IMK_CURVE_POINTS, 0, POINTS, tau, nothing, NULL, NULL};
-    imk_panel empty = {"empty", "", "", true, true, 1, &curve, 0, NULL, IMK_KEY_UPPER};
+    imk_panel empty = {"empty", "", "", true, true, 1, &curve, 0, NULL, IMK_KEY_UPPER, NULL};
     imk_figure bad = {"", 1, 1, &empty};
     CHECK_STATUS(imk_figure_write(&bad, path_in_directory("a.png"), &error), IMK_ERROR_EMPTY);
     assert_string_equal(error.field, "empty");

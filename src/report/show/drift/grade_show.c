@@ -106,6 +106,8 @@ static void show_data(const imk_graded *one, const char *name, imk_result *resul
                     known && row ? row->position_performance : NULL);
     show_computed(one, result);
     imk_result_text(result, "no_position", one->no_position);
+    imki_show_place_data(one, result);
+    imk_show_build(imk_device_build_find(name), result);
     imk_result_end(result);
 }
 
@@ -348,6 +350,25 @@ static void show_comparison(const imk_graded_several *r, imk_audience audience, 
     }
 }
 
+/* Size, mass and supply of models that are devices of the catalogue. */
+static void show_builds(const imk_graded_several *r, imk_result *result)
+{
+    imk_table *table = NULL;
+    for (size_t m = 0; m < r->count; m++) {
+        const imk_device_build *build = imk_device_build_find(r->name[m]);
+        if (!build)
+            continue;
+        if (!table) {
+            imk_result_gap(result);
+            table = imk_result_table(result, 0xeU);
+            imk_table_row(table, "model\tsize [mm]\tmass [g]\tsupply\tread in");
+        }
+        imk_table_row(table, "%s", build->device);
+        imk_show_build_cells(build, table);
+        imk_table_add(table, "%s", build->source);
+    }
+}
+
 /* ---- all ---- */
 
 /* The remarks below the table of computed positions. */
@@ -415,6 +436,7 @@ void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *
     for (size_t m = 0; m < r->count; m++)
         show_data(r->graded[m], r->name[m], result);
     imk_result_end(result);
+    imki_show_map_data(result);
     imk_result_end(result);
     imk_result_title(result, "Grade", "%s", r->count > 1 ? "" : r->name[0]);
     show_comparison(r, IMK_FOR_PAGE, result);
@@ -424,6 +446,8 @@ void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *
         show_case(r->graded[m], r->name[m], result);
     }
     show_comparison(r, IMK_FOR_TERMINAL, result);
+    imk_result_for(result, IMK_FOR_BOTH);
+    show_builds(r, result);
     imk_result_for(result, IMK_FOR_PLOT);
     imki_show_grade_plot(r, map, result);
     imk_result_for(result, IMK_FOR_PAGE);
