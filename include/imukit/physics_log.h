@@ -25,9 +25,11 @@ typedef struct imk_physics_input {
 IMK_API imk_exposure imk_physics_input_at(const imk_physics_input *input, double rate,
                                           uint64_t index);
 
-/** Internal steps of a view, and of each second of a run (of one second at least): a design that
- *  needs more is refused before it runs, because it would hardly end. */
+/** Internal steps of each second of a run (of one second at least): a design that needs more is
+ *  refused before it runs, because it would hardly end. */
 #define IMK_PHYSICS_STEPS 1e7
+/** Internal steps of a view of the length that it states itself. */
+#define IMK_PHYSICS_VIEW_STEPS 3e6
 /** Internal steps of any run. */
 #define IMK_PHYSICS_STEPS_MAX 1e12
 

@@ -170,7 +170,9 @@ imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t
     imk_physics_settings physics = settings->physics;
     physics.rate = view->rate;
     physics.duration = view->settle + view->duration;
-    physics.steps_max = IMK_PHYSICS_STEPS;
+    /* a page has several views; who asks for a length of one waits for it as for a run */
+    physics.steps_max = settings->view_duration > 0 ? IMK_PHYSICS_STEPS * fmax(1, physics.duration)
+                                                    : IMK_PHYSICS_VIEW_STEPS;
     const imk_physics_input input = input_of(settings, view);
     physics.turning = imki_physics_turning(&input);
     status = state && v->data
