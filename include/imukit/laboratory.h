@@ -55,7 +55,8 @@ typedef struct imk_laboratory {
     int points;       /**< points of the rate table, 7 … 101, odd; 0: no rate table; default 21 */
     int cycles;       /**< power cycles of every experiment, 3 … 255; default 6 */
     double settle;    /**< time left out at the beginning of each point [s]; negative (default):
-                         until a pilot run no longer changes, at most 3.1 s */
+                         twice the time after which a pilot run no
+                         longer changes, at most 6.2 s */
     double dwell;     /**< averaging time of each point [s], longer where the integral is read with
                          an error; default 0.16 */
     bool threshold;   /**< true */

@@ -206,6 +206,20 @@ static bool make_all_cycles(imki_bench *bench, running *r, double *misfit)
     }
 }
 
+/* Simulated time at which the sigma would be as wanted. Rounding becomes smaller as the dwell grows,
+ * noise as the root of the number of cycles. */
+static double time_needed(const imki_bench *bench, const running *r, size_t column, double misfit)
+{
+    const imki_experiment *e = &bench->experiment;
+    const double wanted = wanted_sigma(bench, column), needed = cycles_needed(bench, r, column, misfit);
+    const double noise = fmax(misfit, sigma_of_mean(r->x_square[column], r->count));
+    const double cycles = bench->laboratory->cycles;
+    const double rounding = rounding_sigma(bench, column, cycles);
+    if (rounding > wanted && rounding > noise && isfinite(needed))
+        return (double)e->rows * cycles * (bench->settle + 1.25 * e->dwell * rounding / wanted);
+    return e->seconds / r->count * needed;
+}
+
 static void keep(imki_bench *bench, const running *r, const double *misfit)
 {
     imki_experiment *e = &bench->experiment;
@@ -226,10 +240,9 @@ static void keep(imki_bench *bench, const running *r, const double *misfit)
             continue;
         *c->value = e->x[k] / c->unit;
         *c->sigma = e->sigma[k] / c->unit;
-        const double needed = cycles_needed(bench, r, k, misfit[k]);
+        const double needs = time_needed(bench, r, k, misfit[k]);
         bench->result->effort[imki_figure_of(bench, c->key)] = (imk_laboratory_effort){
-            r->count - 1.0, e->seconds, e->seconds / r->count * needed,
-            isinf(needed) ? e->limit : NULL};
+            r->count - 1.0, e->seconds, needs, isinf(needs) ? e->limit : NULL};
     }
 }
 

@@ -107,6 +107,9 @@ void imk_show_physics_view(const imk_physics_view *v, imk_result *result)
 
 /* ---- laboratory ------------------------------------------------------------------------------ */
 
+/* A panel is left out where nothing changes by more than the rounding of the arithmetic. */
+static const double nothing = 1e-12;
+
 /* Bars of two standard deviations, and then the closed form as a line through the same inputs. */
 static void add_measured(imk_figure_builder *figure)
 {
@@ -160,10 +163,11 @@ static void add_poses(const imk_laboratory_result *r, bool gyro, imk_figure_buil
     double largest = 0;
     for (int i = 0; i < r->pose_count; i++)
         largest = fmax(largest, fmax(fabs(r->pose[i].error), fabs(r->pose[i].computed)));
+    if (largest <= nothing * r->full_scale)
+        return;
     const imk_unit unit = unit_for(gyro ? "rad/s" : "m/s^2", largest);
     const imk_panel panel = {.title = "Tumble: 1 g in 18 directions",
-                             .x_label = "1-6: along +x -x +y -y +z -z; 7-10: between x and y, "
-                                        "11-14: y and z, 15-18: z and x",
+                             .x_label = "direction",
                              .y_label = imki_physics_label(
                                  y, gyro ? "change of the output" : "output - input", unit.text)};
     imk_figure_panel(figure, &panel);
@@ -185,6 +189,8 @@ static void add_warmth(const imk_laboratory_result *r, bool gyro, bool scale_fac
         largest = fmax(largest, scale_factor ? fmax(fabs(w->scale), fabs(w->scale_computed))
                                              : fmax(fabs(w->bias), fabs(w->bias_computed)));
     }
+    if (largest <= nothing * (scale_factor ? 1 : r->full_scale))
+        return;
     const imk_unit unit = scale_factor ? imk_unit_of("ppm")
                                        : unit_for(gyro ? "rad/s" : "m/s^2", largest);
     const imk_panel panel = {
@@ -226,7 +232,7 @@ static void add_response(const imk_physics_sweep *l, imk_figure_builder *figure)
                              .y_label = "gain",
                              .x_logarithmic = true,
                              .y_logarithmic = true,
-                             .key = IMK_KEY_LOWER};
+                             .key = IMK_KEY_BELOW};
     imk_figure_panel(figure, &panel);
     add_measured(figure);
     for (int i = 0; i < r->response_count; i++)
@@ -252,7 +258,9 @@ void imki_show_sweep_figure(const imk_physics_shown *p, imk_result *result)
     imk_figure_builder *figure = imk_result_figure(
         result, instrument->title, 2,
         "What the input, 1 g and the temperature change in the reading, with bars of two standard "
-        "deviations, and the gain for a sine. The lines are the closed forms.");
+        "deviations, and the gain for a sine. The lines are the closed forms. Directions 1 to 6 are "
+        "+x, -x, +y, -y, +z, -z, then 7 to 10 between x and y, 11 to 14 between y and z, 15 to 18 "
+        "between z and x.");
     if (r->point_count > 0)
         add_table(r, gyro, figure);
     if (r->pose_count > 0)

@@ -148,6 +148,9 @@ static void show_points(const imk_laboratory_result *r, const char *si, imk_resu
         imk_result_quantity(result, "input", r->point[i].input, si);
         imk_result_quantity(result, "output", r->point[i].output, si);
         imk_result_quantity(result, "sigma", r->point[i].sigma, si);
+        imk_result_quantity(result, "error", r->point[i].error, si);
+        imk_result_quantity(result, "error_sigma", r->point[i].error_sigma, si);
+        imk_result_quantity(result, "computed", r->point[i].computed, si);
         imk_result_end(result);
     }
     imk_result_end(result);
