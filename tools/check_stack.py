@@ -26,6 +26,8 @@ LIMIT = 48 * 1024
 BOUNDED = {
     "src/base/units/units.c:read_product": 9,  # a bracket in each of 8, BRACKETS_MAX
 }
+# Macros that define a function, and what it takes (src/physics/derived_rows_internal.h).
+DEFINES = dict.fromkeys(["VALUE", "VALUE_IF"], "const void *design")
 # What is not ours. libm: the reduction of large angles, with 4 x 20 doubles, is its deepest.
 OUTSIDE = [(r"__aeabi_\w+|__\w+[sd]f\d?", 64), (r"mem\w+|str\w+", 128), (r"\w+", 1024)]
 
@@ -117,8 +119,10 @@ class Types:
         return lines[0][int(column) - 1:] + "\n" + "\n".join(lines[1:12])
 
     def of_function(self, place):
-        match = re.match(r"\w+\(([^()]*)\)", self.at(place))
-        return parameter_types(match[1]) if match else None
+        text = self.at(place)
+        match = re.match(r"\w+\(([^()]*)\)", text)
+        taken = DEFINES.get(text.split("(")[0], match and match[1])
+        return parameter_types(taken) if taken else None
 
     def of_call(self, place):
         match = re.match(r"[\w.>\[\]\s-]*?(\w+)\(", self.at(place))

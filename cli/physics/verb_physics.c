@@ -18,7 +18,8 @@ static const option task_option_table[] = {
      .help =
          "print the design as a file with units and comments, as a start for a design of your own"},
     {"reduce", OPTION_FLAG, AT(reduce),
-     .help = "print the error model by closed forms as a table; -o MODEL.yaml writes it"},
+     .help = "print the error model by closed forms and what follows from the parts as tables; -o "
+             "MODEL.yaml writes the model"},
     {"sweep", OPTION_FLAG, AT(sweep),
      .help = "find the error model by the experiments of a laboratory and compare it with the "
              "closed forms; -o MODEL.yaml without --reduce writes what was measured"},
@@ -378,7 +379,8 @@ const verb physics_verb = {
     .description =
         "INSTRUMENT is a name from the list that imukit physics prints, with its default design; "
         "DESIGN.yaml is a design file (docs/design-file.md); --show prints one to start from. "
-        "Without an option the design is printed.\n\nEach row of a log is the mean over the sample "
+        "Without an option the design and what follows from it are printed.\n\nEach row of a log "
+        "is the mean over the sample "
         "that ends at its time; the input is held over a sample. x is the input axis; the "
         "documentation of each instrument describes y and z. The views are drawn for the input of "
         "--rate and --acceleration; without these options each view has an input that suits it.",

@@ -26,6 +26,20 @@ typedef struct imk_expected_noise {
     imk_resonance resonance[IMK_TERMS_MAX];
 } imk_expected_noise;
 
+/** What identification finds of a model's noise where it does not see the output filter. */
+typedef struct imk_identify_seen {
+    double white;   /**< N [unit/sqrt(Hz)] */
+    double reading; /**< 1 sigma of a reading of the integral [unit s] */
+} imk_identify_seen;
+
+/** The white noise and the errors of the readings that an estimate without a filter tends to, in
+ *  records of this duration [s] and of samples dt [s] apart of this axis: those of the model if the
+ *  axis has no bandwidth; for a bandwidth beyond half the sample rate some percent less
+ *  [WHITE1982]. Takes about 10 ms.
+ *  @param readings  errors of the readings are part of the estimate; if not, white noise has them */
+IMK_API imk_identify_seen imk_identify_seen_of(const imk_triad *triad, int axis, double dt,
+                                               double duration, bool readings);
+
 /** The noise of one axis of a model, sampled at intervals dt [s]. Terms of strength 0 are left out.
  */
 IMK_API imk_expected_noise imk_expected_noise_of(const imk_triad *triad, int axis, double dt);

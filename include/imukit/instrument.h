@@ -116,6 +116,22 @@ typedef struct imk_view {
     bool points; /**< drawn as separate points, because the signals jump */
 } imk_view;
 
+/* ---- derived quantities ---------------------------------------------------------------------- */
+
+/** A quantity that follows from the parts of a design by an equation, without the errors of the
+ *  electronics: what a designer computes first. */
+typedef struct imk_derived {
+    const char *name;     /**< as textbooks call it: "nutation frequency" */
+    const char *symbol;   /**< left side of the equation: "f_n" */
+    const char *si;       /**< SI unit of the value: "Hz" */
+    const char *unit;     /**< unit in which it is shown */
+    const char *equation; /**< in the letters of the instrument's header: "f_n = H/(2 pi …)" */
+    const char *source;   /**< citation of docs/references.md: "[ARNOLD1961]" */
+    /** Value in SI for a valid design; NaN or infinite: this design has none. */
+    double (*value)(const void *design);
+    const char *absent; /**< why a design has none, "no loop holds the float"; NULL: all have one */
+} imk_derived;
+
 /* ---- the interface --------------------------------------------------------------------------- */
 
 /** A kind of instrument. */
@@ -136,6 +152,7 @@ typedef struct imk_instrument {
     const imk_signal *signals;
     size_t view_count;
     const imk_view *views;
+    const imk_derived *derived; /**< its last row has no name (NULL) */
 
     /** A realistic design, cookie included. */
     void (*set_default)(void *design);
@@ -164,6 +181,13 @@ IMK_API size_t imk_instrument_count(void);
 IMK_API const imk_instrument *imk_instrument_get(size_t index);
 /** Kind by name ("ring_laser", case, blanks, - and _ ignored); NULL when there is none. */
 IMK_API const imk_instrument *imk_instrument_find(const char *name);
+
+/** Derived quantity by name ("nutation frequency") or symbol ("f_n"); NULL when there is none. */
+IMK_API const imk_derived *imk_instrument_derived(const imk_instrument *instrument,
+                                                  const char *name);
+/** Value of a derived quantity in SI, NaN when this design has none (derived->absent says why). The
+ *  design must be valid. */
+IMK_API double imk_derived_value(const imk_derived *derived, const void *design);
 
 /** Check that a design belongs to this instrument, that every field is finite and in its range, and
  *  that the design is possible as a whole.

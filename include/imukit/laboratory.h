@@ -27,7 +27,8 @@
  *  possible within `longest`. The size that matters is the closed form's value, or what the reading
  *  itself changes from run to run if that is more: the repeatability of the bias (the bias
  *  instability of an instrument that states none) together with that of the scale factor at the
- *  input where the term acts: full scale, 1 g, 20 K, 0.01 K/s, and for noise a mean over one hour. */
+ *  input where the term acts: full scale, 1 g, 20 K, 0.01 K/s, and for noise a mean over one hour.
+ */
 #ifndef IMUKIT_LABORATORY_H
 #define IMUKIT_LABORATORY_H
 
@@ -49,9 +50,9 @@ typedef struct imk_laboratory {
     const imk_instrument *instrument;
     const void *design;
     imk_physics_settings physics; /**< power cycle k of the experiments is run 4096 run + k */
-    imk_exposure surroundings; /**< conditions to which the input of each experiment is added */
-    double full_scale;         /**< largest input [rad/s or m/s^2]; 0: 0.8 of the range that reduce
-                                  states, else 1 rad/s or 10 m/s^2 */
+    imk_exposure surroundings;    /**< conditions to which the input of each experiment is added */
+    double full_scale; /**< largest input [rad/s or m/s^2]; 0: 0.8 of the range that reduce
+                          states, else 1 rad/s or 10 m/s^2 */
     int points;       /**< points of the rate table, 7 … 101, odd; 0: no rate table; default 21 */
     int cycles;       /**< power cycles of every experiment, 3 … 255; default 6 */
     double settle;    /**< time left out at the beginning of each point [s]; negative (default):
@@ -72,8 +73,8 @@ typedef struct imk_laboratory {
      *  takes about 4 s to compute on one core, 6 s at the slow level, estimated from the number and
      *  length of the internal steps. What cannot be told within it is not tried. */
     double longest;
-    /** true (default): power cycles, static record and what would take too long otherwise are at the
-     *  slow level, if there is one. */
+    /** true (default): power cycles, static record and what would take too long otherwise are at
+     * the slow level, if there is one. */
     bool quick;
     /** Called between points, never by two threads at once; false stops the experiments. NULL: not
      *  called. @param done,total  points of the stage */
@@ -150,7 +151,7 @@ typedef struct imk_laboratory_result {
                         not, with their sigmas */
     size_t figure_count;
     imk_laboratory_effort effort[IMK_LABORATORY_FIGURES_MAX]; /**< of imk_laboratory_figures() */
-    double matters[IMK_LABORATORY_FIGURES_MAX]; /**< the size that matters of each */
+    double matters[IMK_LABORATORY_FIGURES_MAX];               /**< the size that matters of each */
 } imk_laboratory_result;
 
 /** Bytes of workspace. */
@@ -166,10 +167,10 @@ IMK_API imk_status imk_laboratory_run(const imk_laboratory *laboratory,
 
 /** One parameter of a model of one axis, in a list that is the same for all models of one kind. */
 typedef struct imk_laboratory_figure {
-    const char *key;     /**< "scale_factor.fixed", "g_sensitivity.y"; "misalignment.y" contains the
-                            cross-axis response */
-    const char *si;      /**< unit of the value */
-    const char *unit;    /**< unit in which it is shown */
+    const char *key;  /**< "scale_factor.fixed", "g_sensitivity.y"; "misalignment.y" contains the
+                         cross-axis response */
+    const char *si;   /**< unit of the value */
+    const char *unit; /**< unit in which it is shown */
     double value, sigma;
 } imk_laboratory_figure;
 
@@ -183,14 +184,15 @@ IMK_API size_t imk_laboratory_figures(const imk_model *model, int sensor,
 /** What a comparison says. */
 typedef enum imk_laboratory_verdict {
     /** No difference that matters: |difference| + 3 sigma is at most 0.3 of the size that matters,
-     *  and the difference is within chance, or 1 % of that size. A closed form that is wrong by half
-     *  of its value is called this in less than 1 % of the cases, whatever the noise. */
+     *  and the difference is within chance, or 1 % of that size. A closed form that is wrong by
+     * half of its value is called this in less than 1 % of the cases, whatever the noise. */
     IMK_LABORATORY_AGREES = 0,
     /** The difference is beyond chance, but within a tenth of the size that matters. */
     IMK_LABORATORY_CLOSE,
     /** It is beyond chance and larger. False alarms: one figure in 10000. */
     IMK_LABORATORY_DIFFERS,
-    IMK_LABORATORY_CANNOT_TELL, /**< within chance, but the experiment could not show what matters */
+    IMK_LABORATORY_CANNOT_TELL, /**< within chance, but the experiment could not show what matters
+                                 */
     IMK_LABORATORY_NOT_MEASURED
 } imk_laboratory_verdict;
 

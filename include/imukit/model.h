@@ -243,6 +243,11 @@ IMK_API double imk_noise_reading(const imk_noise *noise, int axis, double dt);
  *  magnetometer. */
 IMK_API void imk_model_default(imk_model *model);
 
+/** Give a model of gyros alone, or of accelerometers alone, three perfect sensors of the other kind,
+ *  along x, y and z: what a navigator needs beside them.
+ *  @return the kind that was added, IMK_GYRO or IMK_ACCEL; -1: both were there */
+IMK_API int imk_model_complete(imk_model *model);
+
 /** Check every field: finite numbers, sizes, signs, unit directions, correlation times, polynomial
  *  ranges, terms that exclude each other or belong to the other kind of sensor. Elements beyond
  *  axis_count or the count of a list are not checked, nor is a sensor that is not present. A time,

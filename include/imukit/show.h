@@ -211,10 +211,11 @@ typedef struct imk_physics_shown {
 
 /** Show the list of all instruments. */
 IMK_API void imk_show_instruments(imk_result *result);
-/** Show a run with its figure and the error models; if there is neither, the design. Anything added
- *  afterwards goes to the page only. */
+/** Show a run with its figure and the error models; if there is neither, the design. Derived
+ *  quantities are shown with the design and with the reduced model. Anything added afterwards goes
+ *  to the page only. */
 IMK_API void imk_show_physics(const imk_physics_shown *shown, imk_result *result);
-/** Show design and error model on the page. */
+/** Show design, derived quantities and error model on the page. */
 IMK_API void imk_show_physics_design(const imk_physics_shown *shown, imk_result *result);
 /** Show the experiments on the page, with a figure if their results can be drawn. */
 IMK_API void imk_show_physics_sweep(const imk_physics_shown *shown, imk_result *result);

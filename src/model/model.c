@@ -25,6 +25,19 @@ void imk_model_default(imk_model *model)
     set_triad(&model->mag, false);
 }
 
+int imk_model_complete(imk_model *model)
+{
+    for (int kind = IMK_GYRO; kind <= IMK_ACCEL; kind++) {
+        imk_triad *triad = imk_model_triad_to_set(model, kind);
+        if (triad->present)
+            continue;
+        memset(triad, 0, sizeof *triad);
+        set_triad(triad, true);
+        return kind;
+    }
+    return -1;
+}
+
 const imk_triad *imk_model_triad(const imk_model *model, int sensor)
 {
     return sensor == IMK_GYRO ? &model->gyro : sensor == IMK_ACCEL ? &model->accel : &model->mag;

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The kinds of instruments there are. */
+/* The kinds of instruments there are, and what follows from their designs. */
 #include "base/text_internal.h"
 #include "imukit/physics.h"
 
+#include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 #define DESCRIPTION(name) &imk_##name##_instrument,
 static const imk_instrument *const instruments[] = {IMK_INSTRUMENT_LIST(DESCRIPTION)};
@@ -46,4 +48,20 @@ const imk_instrument *imk_instrument_find(const char *name)
         if (same_name(name, instruments[i]->name))
             return instruments[i];
     return NULL;
+}
+
+/* ---- derived quantities ---------------------------------------------------------------------- */
+
+const imk_derived *imk_instrument_derived(const imk_instrument *instrument, const char *name)
+{
+    for (const imk_derived *d = instrument->derived; name && d->name; d++)
+        if (strcmp(d->name, name) == 0 || strcmp(d->symbol, name) == 0)
+            return d;
+    return NULL;
+}
+
+double imk_derived_value(const imk_derived *derived, const void *design)
+{
+    const double value = derived->value(design);
+    return isfinite(value) ? value : (double)NAN;
 }

@@ -96,10 +96,12 @@ static inline double imki_quantised(double x, double step)
     .name = #kind, .design_size = sizeof(imk_##kind), .field_count = IMKI_LENGTH(fields),          \
     .fields = fields, .output_count = IMKI_LENGTH(outputs), .outputs = outputs,                    \
     .signal_count = IMKI_LENGTH(signals), .signals = signals, .view_count = IMKI_LENGTH(views),    \
-    .views = views, .set_default = set_default, .check = check, .reduce = reduce
+    .views = views, .derived = imki_##kind##_derived, .set_default = set_default, .check = check,  \
+    .reduce = reduce
 
 /* The functions of an instrument that differ in the type of the design only: they call
- * imk_NAME_default(), imki_NAME_reduce() and what imk_NAME_instrument lists. */
+ * imk_NAME_default(), imki_NAME_reduce() and what imk_NAME_instrument lists. imki_NAME_derived is
+ * in NAME_derived.c. */
 #define IMKI_DESIGN_FUNCTIONS(name)                                                                \
     static void set_default(void *design)                                                          \
     {                                                                                              \

@@ -280,6 +280,53 @@ static void test_reduce(void **state)
     sweep();
 }
 
+/* A derived quantity of the JSON by its name. */
+static json_t *derived_of(json_t *document, const char *name)
+{
+    json_t *list = json_object_get(json_object_get(document, "result"), "derived"), *entry;
+    size_t i;
+    json_array_foreach(list, i, entry) if (strcmp(json_string_value(json_object_get(entry, "name")),
+                                                  name) == 0) return entry;
+    fail_msg("%s is not in the list", name);
+    return NULL;
+}
+
+/* What follows from the parts is with the design, with the error model and on the page, and in SI
+ * in the JSON; of what the design does not have, the reason. */
+static void test_derived(void **state)
+{
+    (void)state;
+    put("d.yaml", "imukit: 1\ninstrument: fibre_optic\nloop: {mode: open, range: 10 deg/s}\n"
+                  "coil: {length: 500 m, diameter: 100 mm}\nsource: {wavelength: 1000 nm}\n");
+    static const char *const tasks[] = {"", "--reduce"};
+    for (int i = 0; i < 2; i++) {
+        char line[100];
+        snprintf(line, sizeof line, "$I physics d.yaml %s", tasks[i]);
+        assert_int_equal(run(line), 0);
+        check_contains(out, "\nDerived quantities\n", tasks[i]);
+        check_contains(out, "K = 2 pi L D/(lambda c)", tasks[i]);
+        check_contains(out, "No effective loop gain: an open loop has no feedback (loop.mode).\n",
+                       tasks[i]);
+        snprintf(line, sizeof line, "$I physics d.yaml %s --json", tasks[i]);
+        assert_int_equal(run(line), 0);
+        json_t *document = json_of(out), *phase = derived_of(document, "Sagnac phase per rate");
+        /* 2 pi 500 0.1/(1e-6 c) rad per rad/s */
+        CHECK_RELATIVE(json_number_value(json_object_get(phase, "value")),
+                       100 * 3.14159265358979 / 299.792458, 1e-12);
+        assert_string_equal(json_string_value(json_object_get(phase, "symbol")), "K");
+        assert_string_equal(json_string_value(json_object_get(phase, "unit")), "rad/(rad/s)");
+        assert_string_equal(json_string_value(json_object_get(phase, "source")), "[VALI1976]");
+        assert_true(json_is_null(json_object_get(phase, "absent")));
+        json_t *gain = derived_of(document, "effective loop gain");
+        assert_true(json_is_null(json_object_get(gain, "value")));
+        assert_string_equal(json_string_value(json_object_get(gain, "absent")),
+                            "an open loop has no feedback (loop.mode)");
+        json_decref(document);
+    }
+    assert_int_equal(run("$I physics d.yaml --report p.html && grep -c 'K = 2 pi L D' p.html"), 0);
+    sweep();
+}
+
 /* Closed forms and experiments side by side; both as figures of the JSON. */
 static void test_sweep(void **state)
 {
@@ -314,7 +361,8 @@ static void test_sweep(void **state)
     /* half a second of each experiment tells nothing about a navigation gyro's bias */
     assert_int_equal(run("$I physics ring_laser --sweep --level slow --duration 0.5s"), 0);
     check_contains(out, "cannot tell: needs", "--duration");
-    check_contains(out, "Zero in the closed forms, not told by the experiment: bias.fixed", "zeros");
+    check_contains(out, "Zero in the closed forms, not told by the experiment: bias.fixed",
+                   "zeros");
     assert_string_equal(err, ""); /* no progress where there is no terminal */
     sweep();
 }
@@ -548,6 +596,7 @@ int main(void)
         cmocka_unit_test(test_told_temperature),
         cmocka_unit_test(test_levels_and_warnings),
         cmocka_unit_test(test_reduce),
+        cmocka_unit_test(test_derived),
         cmocka_unit_test(test_sweep),
         cmocka_unit_test(test_animation),
         cmocka_unit_test(test_examples),

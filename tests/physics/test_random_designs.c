@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Random designs within the tables of their fields, in exposures of any size: a design is refused
- * with the field at fault, or its error model is valid and its readings are finite. */
+ * with the field at fault, or its error model is valid, and derived quantities and readings are
+ * finite. */
 #include "instrument_run.h"
 
 enum { DESIGNS = 120, STEPS = 24, CHANGES_MAX = 12 };
@@ -120,6 +121,15 @@ static bool runs(const imk_instrument *instrument, const void *design, void *sta
     return true;
 }
 
+/* Every derived quantity is finite, or its row says why there is none; a quantity that all designs
+ * have is found in each. */
+static void check_derived(const imk_instrument *instrument, const void *design, int number)
+{
+    for (const imk_derived *d = instrument->derived; d->name; d++)
+        if (!isfinite(imk_derived_value(d, design)) && !d->absent)
+            fail_msg("%s, design %d: %s is not finite", instrument->name, number, d->name);
+}
+
 static void designs_are_refused_or_run(void **unused)
 {
     (void)unused;
@@ -146,6 +156,7 @@ static void designs_are_refused_or_run(void **unused)
             if (imk_model_validate(model, &error) != IMK_OK)
                 fail_msg("%s, design %d: error model with %s = %g", instrument->name, i,
                          error.field, error.value);
+            check_derived(instrument, design, i);
             if (!runs(instrument, design, state))
                 fail_msg("%s, design %d: a number that is not finite", instrument->name, i);
         }

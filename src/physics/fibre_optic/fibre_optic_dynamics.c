@@ -282,9 +282,7 @@ static void start_loop(gyro *g)
     g->ramp_count = design->ramp_bits > 0 ? 2.0 * IMKI_PI / (double)(1 << design->ramp_bits) : 0.0;
     g->per_ramp_count = design->ramp_bits > 0 ? 1.0 / g->ramp_count : 0.0;
     g->step_limit = design->range * g->scale;
-    g->angle_count = design->output_bits > 0
-                         ? imk_fibre_optic_reset_angle(design) / (double)(1 << design->output_bits)
-                         : 0.0;
+    g->angle_count = imki_fibre_optic_count_angle(design);
 }
 
 static void start_slow(gyro *g, const imk_physics_settings *settings)

@@ -167,6 +167,13 @@ double imk_fibre_optic_harmonic_gain(const imk_fibre_optic *design)
            imki_fibre_optic_nominal_slope(design);
 }
 
+double imki_fibre_optic_count_angle(const imk_fibre_optic *design)
+{
+    return design->output_bits > 0
+               ? imk_fibre_optic_reset_angle(design) / (double)(1 << design->output_bits)
+               : 0.0;
+}
+
 /* ---- the Shupe effect ------------------------------------------------------------------------ */
 
 double imk_fibre_optic_shupe_rate(const imk_fibre_optic *design, size_t count, const double *rate)
@@ -224,9 +231,7 @@ void imki_fibre_optic_reduce(const imk_fibre_optic *design, imk_triad *triad)
 
     triad->noise.white.value[0] = reading * imk_fibre_optic_angle_random_walk(design);
     triad->noise.bias_instability.value[0] = design->phase_instability * per_phase;
-    if (design->output_bits > 0)
-        triad->noise.quantization.value[0] =
-            imk_fibre_optic_reset_angle(design) / (double)(1 << design->output_bits) / sqrt(12.0);
+    triad->noise.quantization.value[0] = imki_fibre_optic_count_angle(design) / sqrt(12.0);
     triad->bandwidth.value[0] = imk_fibre_optic_bandwidth(design);
     triad->dead_band.value[0] = open ? 0.0 : design->crosstalk * per_phase;
     triad->range.value[0] = design->range;

@@ -38,6 +38,9 @@ static inline double imki_fibre_optic_scale_ratio(const imk_fibre_optic *design,
             design->wavelength_temperature * warmer);
 }
 
+/* Angle of one count of the output [rad]; 0: not rounded. */
+double imki_fibre_optic_count_angle(const imk_fibre_optic *design);
+
 /* Of a design that has been validated. */
 imk_status imki_fibre_optic_init(const void *design, const imk_physics_settings *settings,
                                  void *state, imk_error *error);
@@ -92,5 +95,8 @@ typedef struct imki_fibre_optic_state {
 
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_fibre_optic_reduce(const imk_fibre_optic *design, imk_triad *triad);
+
+/* The table of its derived quantities. */
+extern const imk_derived imki_fibre_optic_derived[];
 
 #endif

@@ -73,4 +73,7 @@ void imki_free_gyro_slow(imki_free_gyro_state *state, const imki_free_gyro_drive
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_free_gyro_reduce(const imk_free_gyro *design, imk_triad *gyro);
 
+/* The table of its derived quantities. */
+extern const imk_derived imki_free_gyro_derived[];
+
 #endif

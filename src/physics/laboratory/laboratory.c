@@ -30,8 +30,8 @@ imk_laboratory imk_laboratory_default(void)
 size_t imk_laboratory_workspace_size(const imk_laboratory *laboratory)
 {
     const size_t samples = imki_record_samples(laboratory);
-    size_t size = sizeof(imki_bench) + IMKI_STATES * imki_state_size(laboratory) +
-                  4 * IMKI_ALIGNMENT_SLACK;
+    size_t size =
+        sizeof(imki_bench) + IMKI_STATES * imki_state_size(laboratory) + 4 * IMKI_ALIGNMENT_SLACK;
     if (samples > 0)
         size += samples * sizeof(double) + imk_identify_workspace_size(samples);
     return size;

@@ -18,8 +18,8 @@ enum { POSES = IMK_LABORATORY_POSES, TEMPERATURES = IMK_LABORATORY_TEMPERATURES 
  *     accelerometer  output - f_i = b + s f_i + K2 f_i^2 + K3 f_i^3 + X_y f_y + X_z f_z
  *                                 + Kip f_i f_p + Kio f_i f_o + Kpo f_p f_o
  *
- * What acts along x is the rate table's matter, and in the law of an accelerometer only to be out of
- * the way. */
+ * What acts along x is the rate table's matter, and in the law of an accelerometer only to be out
+ * of the way. */
 
 static void pose(size_t number, double u[3])
 {
@@ -73,8 +73,7 @@ static void accel_columns(imki_bench *bench, imki_experiment *e)
         imki_experiment_column(e, cross[k], g, &t->cross_axis.value[0][1 + k],
                                &t->cross_axis.sigma[0][1 + k]);
     for (int k = 0; k < 3; k++)
-        imki_experiment_column(e, products[k], g * g,
-                               &t->nonlinearity.cross_products.value[0][k],
+        imki_experiment_column(e, products[k], g * g, &t->nonlinearity.cross_products.value[0][k],
                                &t->nonlinearity.cross_products.sigma[0][k]);
 }
 
@@ -85,8 +84,8 @@ static void accel_row(const double stated[3], const double u[3], double *row)
     const double p[3] = {0.0, given ? stated[1] : 0.0, given ? stated[2] : 1.0};
     const double o[3] = {0.0, p[2], -p[1]};
     const double along_p = imki_dot3(u, p), along_o = imki_dot3(u, o);
-    const double values[9] = {1.0,  u[0], u[0] * u[0],    u[0] * u[0] * u[0], u[1],
-                              u[2], u[0] * along_p, u[0] * along_o,     along_p * along_o};
+    const double values[9] = {1.0,  u[0],           u[0] * u[0],    u[0] * u[0] * u[0], u[1],
+                              u[2], u[0] * along_p, u[0] * along_o, along_p * along_o};
     for (int k = 0; k < 9; k++)
         row[k] = values[k];
 }
@@ -134,8 +133,8 @@ void imki_tumble(imki_bench *bench)
             p->force[k] = IMK_STANDARD_GRAVITY * u[k];
         p->error = e->change[i] - e->offset[i];
         p->sigma = e->scatter[i];
-        p->computed = imki_experiment_computed(bench, i) - e->offset[i] +
-                      along_input(bench, p->force[0]);
+        p->computed =
+            imki_experiment_computed(bench, i) - e->offset[i] + along_input(bench, p->force[0]);
     }
 }
 
@@ -144,7 +143,8 @@ void imki_tumble(imki_bench *bench)
  * At five temperatures, 10 K apart, the readings at zero and at plus and minus half of full scale;
  * one more run with the temperature rising by 0.01 K/s shows what its rate does.
  *
- *     output - input = b + s u + c |u| + b_T dT + s_T u dT + r dT/dt + (p + q u) dT^2 + (v + w dT) |u| dT
+ *     output - input = b + s u + c |u| + b_T dT + s_T u dT + r dT/dt + (p + q u) dT^2 + (v + w dT)
+ * |u| dT
  *
  * of which the last four terms are not told. */
 
@@ -209,9 +209,9 @@ void imki_chamber(imki_bench *bench)
         const double u = rises ? 0.0 : (double)(i % 3) - 1.0;
         const double warm = rises ? 0.0 : (double)(i / 3) - TEMPERATURES / 2;
         const double square = warm * warm, size = fabs(u);
-        const double row[IMKI_COEFFICIENTS] = {1.0,    u,          size,        warm,
-                                               u * warm, rises ? 1.0 : 0.0, square, u * square,
-                                               size * warm, size * square};
+        const double row[IMKI_COEFFICIENTS] = {
+            1.0,    u,          size,        warm,         u * warm, rises ? 1.0 : 0.0,
+            square, u * square, size * warm, size * square};
         e->trial[i] = imki_trial_of(bench->laboratory, half * u);
         e->trial[i].exposure.temperature += temperature_step * warm;
         e->trial[i].exposure.temperature_rate += rises ? ramp : 0.0;

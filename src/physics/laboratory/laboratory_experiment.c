@@ -103,8 +103,8 @@ static double sigma_of_mean(double square, double count)
     return count > 1.0 ? sqrt(square / (count * (count - 1.0))) : 0.0;
 }
 
-/* 1 sigma of a coefficient from the rounding of the integral at the ends of the dwell, which differs
- * from cycle to cycle but may be alike within one. */
+/* 1 sigma of a coefficient from the rounding of the integral at the ends of the dwell, which
+ * differs from cycle to cycle but may be alike within one. */
 static double rounding_sigma(const imki_bench *bench, size_t column, double cycles)
 {
     const imki_experiment *e = &bench->experiment;
@@ -139,17 +139,19 @@ static bool choose_dwell(imki_bench *bench)
         return false;
     for (size_t k = 0; k < e->columns; k++)
         e->gain[k] = sqrt(e->gain[k]);
+    const double turn = fmax(shortest, longest_turn(bench));
     double dwell = shortest;
     for (size_t k = 0; k < e->columns; k++) {
         if (!e->column[k].key)
             continue;
         /* what differs from run to run needs many cycles, in each of which little is enough */
         const double wanted = wanted_sigma(bench, k) * (e->repeats ? 8.0 / sqrt(cycles) : 1.0);
-        const double needed = 1.25 * shortest * rounding_sigma(bench, k, cycles) / wanted;
+        const double needed =
+            fmin(1.25 * shortest * rounding_sigma(bench, k, cycles) / wanted, turn);
         if (needed <= longest && needed > dwell)
             dwell = needed;
     }
-    e->dwell = fmax(shortest, fmin(dwell, longest_turn(bench)));
+    e->dwell = dwell;
     return true;
 }
 
@@ -206,18 +208,21 @@ static bool make_all_cycles(imki_bench *bench, running *r, double *misfit)
     }
 }
 
-/* Simulated time at which the sigma would be as wanted. Rounding becomes smaller as the dwell grows,
- * noise as the root of the number of cycles. */
+/* Simulated time at which the sigma would be as wanted. Rounding becomes smaller as the dwell
+ * grows, as far as it may grow; noise as the root of the number of cycles. */
 static double time_needed(const imki_bench *bench, const running *r, size_t column, double misfit)
 {
     const imki_experiment *e = &bench->experiment;
-    const double wanted = wanted_sigma(bench, column), needed = cycles_needed(bench, r, column, misfit);
+    const double needed = cycles_needed(bench, r, column, misfit);
     const double noise = fmax(misfit, sigma_of_mean(r->x_square[column], r->count));
-    const double cycles = bench->laboratory->cycles;
+    const double cycles = bench->laboratory->cycles, wanted = wanted_sigma(bench, column);
     const double rounding = rounding_sigma(bench, column, cycles);
-    if (rounding > wanted && rounding > noise && isfinite(needed))
-        return (double)e->rows * cycles * (bench->settle + 1.25 * e->dwell * rounding / wanted);
-    return e->seconds / r->count * needed;
+    if (!(rounding > wanted && rounding > noise && isfinite(needed)))
+        return e->seconds / r->count * needed;
+    const double dwell = 1.25 * e->dwell * rounding / wanted;
+    const double longest = fmin(dwell, fmax(e->dwell, longest_turn(bench)));
+    const double more = dwell / longest;
+    return (double)e->rows * cycles * more * more * (bench->settle + longest);
 }
 
 static void keep(imki_bench *bench, const running *r, const double *misfit)

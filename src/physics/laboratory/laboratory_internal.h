@@ -13,7 +13,7 @@ enum {
     IMKI_TRIALS = IMK_LABORATORY_POINTS_MAX,
     IMKI_COEFFICIENTS = 10,
     IMKI_STATES = IMK_LABORATORY_POINTS_MAX /* simulations that run side by side */
-    
+
 };
 
 /* One run of the instrument with a constant input along x, and whatever else its exposure has. */
@@ -31,10 +31,10 @@ typedef struct imki_column {
 
 /* y = offset + A x: rows are trials, columns coefficients. */
 typedef struct imki_experiment {
-    const char *stage, *limit; /* what the law leaves out: "higher orders of the input" */
+    const char *stage, *limit;  /* what the law leaves out: "higher orders of the input" */
     size_t rows, columns, rest; /* rest: the row without input */
     bool ramps, quick, repeats; /* repeats: its figures differ from run to run */
-    double dwell; /* averaging time of a reading [s] */
+    double dwell;               /* averaging time of a reading [s] */
     imki_trial trial[IMKI_TRIALS];
     double offset[IMKI_TRIALS];
     double a[IMKI_TRIALS * IMKI_COEFFICIENTS];
@@ -55,14 +55,15 @@ typedef struct imki_bench {
     imk_laboratory_result *result;
     imk_triad *triad; /* of result->model */
     imk_laboratory_figure computed[IMK_LABORATORY_FIGURES_MAX];
-    double bias, scale; /* what a reading changes from run to run: without input, and in its scale */
+    double bias,
+        scale; /* what a reading changes from run to run: without input, and in its scale */
     double pendulous_axis[3], bandwidth; /* that reduce states */
-    double white;    /* N that reduce states */
-    double rounding; /* 1 sigma of the rounding of the integral [unit s] */
-    bool ranged;     /* reduce states a range */
+    double white;                        /* N that reduce states */
+    double rounding;                     /* 1 sigma of the rounding of the integral [unit s] */
+    bool ranged;                         /* reduce states a range */
     double settle;                       /* [s] */
     imk_level slow;                      /* level of long simulations */
-    double longest[2]; /* [s], at the level of the laboratory and the slow one */
+    double longest[2];                   /* [s], at the level of the laboratory and the slow one */
     bool cancelled;
     imki_experiment experiment; /* the one in hand */
     char *states;
@@ -71,9 +72,9 @@ typedef struct imki_bench {
     void *identification;
 } imki_bench;
 
-/* laboratory.c: simulated time that an experiment at this sample rate may take [s]: of the settings,
- * or what is computed in about 4 s, 6 s where it is at the slow level. It depends on no clock, so the
- * results are the same on every machine. */
+/* laboratory.c: simulated time that an experiment at this sample rate may take [s]: of the
+ * settings, or what is computed in about 4 s, 6 s where it is at the slow level. It depends on no
+ * clock, so the results are the same on every machine. */
 double imki_longest(const imki_bench *bench, double rate, bool quick);
 
 /* laboratory_trials.c */

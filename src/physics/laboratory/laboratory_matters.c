@@ -17,28 +17,22 @@ typedef struct kind {
     double temperature; /* 20 K of the chamber, 0.01 K/s of its ramp; 1 */
 } kind;
 
-static const kind kinds[] = {{"bias.fixed", 0, 0, 1.0},
-                             {"bias.temperature_rate", 0, 0, 0.01},
-                             {"bias.temperature", 0, 0, 20.0},
-                             {"scale_factor.temperature", 1, 0, 20.0},
-                             {"scale_factor.fixed", 1, 0, 1.0},
-                             {"nonlinearity.k2", 2, 0, 1.0},
-                             {"nonlinearity.koq", 2, 0, 1.0},
-                             {"nonlinearity.k3", 3, 0, 1.0},
-                             {"asymmetry", 1, 0, 1.0},
-                             {"nonlinearity.asymmetry", 1, 0, 1.0},
-                             {"g_sensitivity", 0, 1, 1.0},
-                             {"g2_sensitivity", 0, 2, 1.0},
-                             {"cross_products", 0, 2, 1.0},
-                             {"dead_band", 0, 0, 1.0}};
+static const kind kinds[] = {
+    {"bias.fixed", 0, 0, 1.0},         {"bias.temperature_rate", 0, 0, 0.01},
+    {"bias.temperature", 0, 0, 20.0},  {"scale_factor.temperature", 1, 0, 20.0},
+    {"scale_factor.fixed", 1, 0, 1.0}, {"nonlinearity.k2", 2, 0, 1.0},
+    {"nonlinearity.koq", 2, 0, 1.0},   {"nonlinearity.k3", 3, 0, 1.0},
+    {"asymmetry", 1, 0, 1.0},          {"nonlinearity.asymmetry", 1, 0, 1.0},
+    {"g_sensitivity", 0, 1, 1.0},      {"g2_sensitivity", 0, 2, 1.0},
+    {"cross_products", 0, 2, 1.0},     {"dead_band", 0, 0, 1.0}};
 
 static double power(double x, int n)
 {
     return n == 0 ? 1.0 : x * power(x, n - 1);
 }
 
-/* Noise that is not stated: what it does to a mean of 1 s, or, a random walk, in an hour. In units of
- * seconds, Q, A and N make the same of it. */
+/* Noise that is not stated: what it does to a mean of 1 s, or, a random walk, in an hour. In units
+ * of seconds, Q, A and N make the same of it. */
 static double of_noise(const char *key, double bias)
 {
     const double hour = 3600.0;
@@ -89,9 +83,8 @@ void imki_matters(imki_bench *bench, const imk_model *reduced)
     for (size_t i = 0; i < r->figure_count; i++) {
         const double size = fabs(bench->computed[i].value);
         const bool noise = strncmp(bench->computed[i].key, "noise.", 6) == 0;
-        r->matters[i] = noise && size > 0.0
-                            ? size
-                            : fmax(size, run_to_run(bench, bench->computed[i].key));
+        r->matters[i] =
+            noise && size > 0.0 ? size : fmax(size, run_to_run(bench, bench->computed[i].key));
     }
 }
 

@@ -69,8 +69,7 @@ static void expected_sigmas(const spectrum *s, size_t n, double dt, double relat
         for (int j = 0; j < TERMS; j++)
             if (column[j] >= 0)
                 rows[lines * columns + (size_t)column[j]] =
-                    sqrt(0.5 * (double)((next < n ? next : n) - k)) *
-                    shape(&own, j, dt, f) / sum;
+                    sqrt(0.5 * (double)((next < n ? next : n) - k)) * shape(&own, j, dt, f) / sum;
         k = next;
     }
     if (columns < 2 || lines <= columns)
@@ -181,8 +180,8 @@ static size_t reading_figure(imki_bench *b, const imk_identification *found, imk
 }
 
 /* Keep what a record of these seconds says of a term, which needs so many. What is absent although
- * stated is known as well as the record would show it. Where the rounding is coarser than the noise,
- * nothing is known. */
+ * stated is known as well as the record would show it. Where the rounding is coarser than the
+ * noise, nothing is known. */
 static void keep(imki_bench *b, const imk_identification *found, int term, const spectrum *s,
                  double seconds, double needs)
 {
@@ -196,15 +195,17 @@ static void keep(imki_bench *b, const imk_identification *found, int term, const
     expected_sigmas(s, (size_t)(seconds / found->dt + 0.5), found->dt, relative);
     const double rest = sqrt(fmax(0.0, e->value * e->value - others * others));
     axes->value[0] = e->present ? rest * unit : 0.0;
-    axes->sigma[0] = rest > 0.0 ? e->sigma * e->value / rest * unit
-                                : relative[term] * b->computed[i].value;
+    axes->sigma[0] =
+        rest > 0.0 ? e->sigma * e->value / rest * unit : relative[term] * b->computed[i].value;
     if (!e->present && !(b->computed[i].value > 0.0)) /* how large it may be */
         axes->sigma[0] = e->upper / 2.0 * unit;
     if (coarse)
         axes->sigma[0] = fmax(axes->sigma[0], fabs(axes->value[0] - b->computed[i].value));
-    b->result->effort[i] = (imk_laboratory_effort){
-        (double)INFINITY, seconds, coarse ? (double)INFINITY : needs,
-        coarse ? "rounding is not white" : isinf(needs) ? "other noise hides it" : NULL};
+    b->result->effort[i] =
+        (imk_laboratory_effort){(double)INFINITY, seconds, coarse ? (double)INFINITY : needs,
+                                coarse         ? "rounding is not white"
+                                : isinf(needs) ? "other noise hides it"
+                                               : NULL};
 }
 
 static spectrum stated(const imki_bench *b)
@@ -213,7 +214,8 @@ static spectrum stated(const imki_bench *b)
     spectrum s = {.rate = b->laboratory->physics.rate};
     for (int k = 0; k < TERMS; k++)
         s.size[k] = b->computed[imki_figure_of(b, places[k].key[sensor])].value;
-    s.size[READING] = hypot(s.size[READING], b->computed[imki_figure_of(b, readings[sensor][1])].value);
+    s.size[READING] =
+        hypot(s.size[READING], b->computed[imki_figure_of(b, readings[sensor][1])].value);
     s.density = b->computed[imki_figure_of(b, readings[sensor][2])].value;
     return s;
 }
@@ -244,7 +246,8 @@ void imki_record(imki_bench *b)
         else
             second = fmax(second, needs[k]);
     }
-    first = l->record > 0.0 ? l->record : fmax(first, fmax(1024.0 / rate, fmin(60.0, b->longest[l->quick])));
+    first = l->record > 0.0 ? l->record
+                            : fmax(first, fmax(1024.0 / rate, fmin(60.0, b->longest[l->quick])));
     first = fmin(first, (double)b->samples / rate);
     imk_identification *found = &b->result->noise;
     b->result->has_noise = identify(b, rate, (size_t)(first * rate + 0.5), found);

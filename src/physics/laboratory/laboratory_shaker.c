@@ -116,9 +116,8 @@ static void refine(shaking *s, double limit, imk_laboratory_response *low,
     for (int i = 0; i < REFINEMENTS; i++) {
         const double at = crossing(low, high, limit);
         const double wide = imk_ln(high->frequency / low->frequency) / 8.0;
-        imk_laboratory_response tried[2] = {
-            {fmax(at * imk_exp(-wide), low->frequency), 0.0, 0.0},
-            {fmin(at * imk_exp(wide), high->frequency), 0.0, 0.0}};
+        imk_laboratory_response tried[2] = {{fmax(at * imk_exp(-wide), low->frequency), 0.0, 0.0},
+                                            {fmin(at * imk_exp(wide), high->frequency), 0.0, 0.0}};
         shaking two = {s->bench, tried};
         imk_execute(s->bench->executor, 2, measure, &two);
         for (int k = 0; k < 2; k++) {
@@ -177,7 +176,6 @@ void imki_shaker(imki_bench *bench)
     if (result->response_count > 1)
         find_bandwidth(bench);
     if (result->bandwidth > 0.0)
-        result->effort[imki_figure_of(bench, "bandwidth")] =
-            (imk_laboratory_effort){(double)INFINITY, seconds, (double)INFINITY,
-                                    "steps of the frequency"};
+        result->effort[imki_figure_of(bench, "bandwidth")] = (imk_laboratory_effort){
+            (double)INFINITY, seconds, (double)INFINITY, "steps of the frequency"};
 }

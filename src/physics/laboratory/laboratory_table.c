@@ -132,8 +132,9 @@ static void keep_points(imki_bench *bench)
     for (size_t i = 0; i < e->rows; i++) {
         const double input = e->trial[i].input;
         result->point[i] = (imk_laboratory_point){
-            input, e->mean[i], e->spread[i], e->change[i] - input, e->scatter[i],
-            imki_experiment_computed(bench, i) - input + scale * input};
+            input,         e->mean[i],
+            e->spread[i],  e->change[i] - input,
+            e->scatter[i], imki_experiment_computed(bench, i) - input + scale * input};
     }
     result->line_deviation = deviation_from_line(e) / result->full_scale;
 }

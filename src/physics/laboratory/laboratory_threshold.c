@@ -79,8 +79,8 @@ void imki_threshold(imki_bench *bench)
     /* without one, it may be below the smallest input that gave an answer */
     bench->triad->dead_band.value[0] = bad > 0.0 ? sqrt(good * bad) : 0.0;
     bench->triad->dead_band.sigma[0] = bad > 0.0 ? good - bad : good / 3.0;
-    const double times = bench->triad->dead_band.sigma[0] /
-                         (IMKI_WANTED * bench->result->matters[figure]);
+    const double times =
+        bench->triad->dead_band.sigma[0] / (IMKI_WANTED * bench->result->matters[figure]);
     effort->freedom = (double)INFINITY;
     effort->needs = effort->seconds * fmax(times * times, 1.0);
 }

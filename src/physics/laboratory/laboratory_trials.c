@@ -109,15 +109,17 @@ static void measure(void *context, size_t item)
                          imki_samples_in(e->dwell, physics.rate), state);
 }
 
-/* Windows in which a step of half of full scale, at the highest temperature of the chamber, beside a run without it, still differs from the
- * last ones by more than 1e-6 of itself and their scatter. */
+/* Windows in which a step of half of full scale, at the highest temperature of the chamber, beside
+ * a run without it, still differs from the last ones by more than 1e-6 of itself and their scatter.
+ */
 double imki_settling_time(imki_bench *bench)
 {
     enum { WINDOWS = 40, LAST = 10 };
     static const double window = 0.1, small = 1e-6, warmer = 20.0; /* [s], [1], [K] */
     const imk_laboratory *l = bench->laboratory;
     const imk_physics_settings physics = imki_cycle(bench, 0, false);
-    imki_trial trial[2] = {imki_trial_of(l, 0.0), imki_trial_of(l, 0.5 * bench->result->full_scale)};
+    imki_trial trial[2] = {imki_trial_of(l, 0.0),
+                           imki_trial_of(l, 0.5 * bench->result->full_scale)};
     double change[WINDOWS] = {0.0}, end = 0.0, scatter = 0.0;
     if (l->settle >= 0.0)
         return l->settle;
@@ -128,9 +130,9 @@ double imki_settling_time(imki_bench *bench)
             return window;
         bring_to_speed(l, &trial[k], state);
         for (size_t i = 0; i < WINDOWS; i++)
-            change[i] += (k == 0 ? -1.0 : 1.0) *
-                         mean_of(l->instrument, &trial[k].exposure,
-                                 imki_samples_in(window, physics.rate), state);
+            change[i] +=
+                (k == 0 ? -1.0 : 1.0) * mean_of(l->instrument, &trial[k].exposure,
+                                                imki_samples_in(window, physics.rate), state);
     }
     for (size_t i = WINDOWS - LAST; i < WINDOWS; i++)
         end += change[i] / LAST;

@@ -128,4 +128,7 @@ double imki_mems_step_length(const void *design, const imk_physics_settings *set
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_mems_accelerometer_reduce(const imk_mems_accelerometer *design, imk_triad *triad);
 
+/* The table of its derived quantities. */
+extern const imk_derived imki_mems_accelerometer_derived[];
+
 #endif

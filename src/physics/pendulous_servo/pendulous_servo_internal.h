@@ -42,4 +42,7 @@ void imki_servo_observe(const void *state, double *signals);
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_pendulous_servo_reduce(const imk_pendulous_servo *design, imk_triad *triad);
 
+/* The table of its derived quantities. */
+extern const imk_derived imki_pendulous_servo_derived[];
+
 #endif

@@ -42,4 +42,7 @@ double imki_rate_gyro_step_length(const void *design, const imk_physics_settings
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_rate_gyro_reduce(const imk_rate_gyro *design, imk_triad *triad);
 
+/* The table of its derived quantities. */
+extern const imk_derived imki_rate_gyro_derived[];
+
 #endif

@@ -68,6 +68,16 @@ static double closed_loop_power(const void *design, double w)
     return (k2 * k2 + k1 * k1 * w * w) / (real * real + imaginary * imaginary);
 }
 
+double imki_rate_integrating_gyro_bandwidth(const imk_rate_integrating_gyro *d)
+{
+    if (d->rebalance == IMK_REBALANCE_OPEN)
+        return 1.0 / (2.0 * IMKI_PI * imk_rate_integrating_gyro_time_constant(d));
+    if (d->rebalance != IMK_REBALANCE_ANALOG)
+        return 0.0;
+    const double scale = 2.0 * IMKI_PI * d->loop_frequency;
+    return imki_response_edge(closed_loop_power, d, scale) / (2.0 * IMKI_PI);
+}
+
 void imki_rate_integrating_gyro_reduce(const imk_rate_integrating_gyro *d, imk_triad *triad)
 {
     const imki_gimbal gimbal = imki_rate_integrating_gyro_gimbal(d);
@@ -81,8 +91,7 @@ void imki_rate_integrating_gyro_reduce(const imk_rate_integrating_gyro *d, imk_t
     triad->noise.white.value[0] = imk_rate_integrating_gyro_random_walk(d);
     if (open) {
         step = d->pickoff_resolution * d->damping / d->momentum;
-        triad->bandwidth.value[0] =
-            1.0 / (2.0 * IMKI_PI * imk_rate_integrating_gyro_time_constant(d));
+        triad->bandwidth.value[0] = imki_rate_integrating_gyro_bandwidth(d);
     } else {
         triad->range.value[0] = imk_rate_integrating_gyro_range(d);
     }

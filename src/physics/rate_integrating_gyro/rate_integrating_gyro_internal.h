@@ -42,6 +42,8 @@ typedef struct imki_rate_integrating_gyro_state {
 } imki_rate_integrating_gyro_state;
 
 imki_gimbal imki_rate_integrating_gyro_gimbal(const imk_rate_integrating_gyro *design);
+/* -3 dB of the float without a loop, or of the analog loop [Hz]; 0 of pulses. */
+double imki_rate_integrating_gyro_bandwidth(const imk_rate_integrating_gyro *design);
 /* Of a design that has been validated. */
 imk_status imki_rate_integrating_gyro_init(const void *design, const imk_physics_settings *settings,
                                            void *state, imk_error *error);
@@ -52,5 +54,8 @@ double imki_rate_integrating_gyro_step_length(const void *design,
 
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_rate_integrating_gyro_reduce(const imk_rate_integrating_gyro *design, imk_triad *triad);
+
+/* The table of its derived quantities. */
+extern const imk_derived imki_rate_integrating_gyro_derived[];
 
 #endif

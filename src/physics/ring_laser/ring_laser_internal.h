@@ -150,4 +150,7 @@ double imki_ring_laser_step(const imk_ring_laser *design, double bend, double pu
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_ring_laser_reduce(const imk_ring_laser *design, imk_triad *triad);
 
+/* The table of its derived quantities. */
+extern const imk_derived imki_ring_laser_derived[];
+
 #endif

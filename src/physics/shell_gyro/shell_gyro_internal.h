@@ -171,4 +171,7 @@ double imki_shell_step_length(const void *design, const imk_physics_settings *se
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_shell_gyro_reduce(const imk_shell_gyro *design, imk_triad *triad);
 
+/* The table of its derived quantities. */
+extern const imk_derived imki_shell_gyro_derived[];
+
 #endif

@@ -72,7 +72,7 @@ void imki_reduce_torques(const imk_error_torque *torque, const imki_gimbal *gimb
 
 /* The last crossing of half the power, from above, by bisection of w over 12 octaves about the
  * scale. */
-static double half_power(double (*power)(const void *, double), const void *design, double scale)
+double imki_response_edge(double (*power)(const void *, double), const void *design, double scale)
 {
     double high = scale * 4096.0, low = high;
     while (low > scale / 4096.0 && power(design, low) < 0.5) {
@@ -92,7 +92,7 @@ static double half_power(double (*power)(const void *, double), const void *desi
 void imki_reduce_response(double (*power)(const void *design, double w), const void *design,
                           double scale, imk_triad *triad)
 {
-    const double edge = half_power(power, design, scale);
+    const double edge = imki_response_edge(power, design, scale);
     double peak = 1.0;
     for (int i = 1; i <= 1000; i++) {
         const double here = power(design, edge * i / 1000.0);

@@ -56,10 +56,14 @@ void imki_reduce_temperature(double per_kelvin, imk_temperature_polynomial *poly
  * bias besides what its torque changes by. After both, and the bias's own slope, have been set. */
 void imki_reduce_scale_temperature(double relative, imk_triad *triad);
 
-/* The low-pass filter of model.h that stands for a response: same -3 dB frequency, and a damping
- * that gives the same peak (first order's absence of one: 0.7071).
+/* Half-power frequency of a response [rad/s].
  *  @param power  |G|^2 at the frequency w [rad/s], G(0) = 1
  *  @param scale  a frequency of the order of the bandwidth [rad/s] */
+double imki_response_edge(double (*power)(const void *design, double w), const void *design,
+                          double scale);
+
+/* The low-pass filter of model.h that stands for a response: same -3 dB frequency, and a damping
+ * that gives the same peak (first order's absence of one: 0.7071). */
 void imki_reduce_response(double (*power)(const void *design, double w), const void *design,
                           double scale, imk_triad *triad);
 

@@ -35,4 +35,7 @@ void imki_suspended_start(const imk_suspended_rotor *design, double axis[3]);
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_suspended_rotor_reduce(const imk_suspended_rotor *design, imk_triad *gyro);
 
+/* The table of its derived quantities. */
+extern const imk_derived imki_suspended_rotor_derived[];
+
 #endif

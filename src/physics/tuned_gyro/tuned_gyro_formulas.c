@@ -112,6 +112,11 @@ static double loop_power(const void *design, double w)
            (below_real * below_real + below_imaginary * below_imaginary);
 }
 
+double imki_tuned_gyro_bandwidth(const imk_tuned_gyro *d)
+{
+    return imki_response_edge(loop_power, d, 2.0 * IMKI_PI * d->loop_frequency) / (2.0 * IMKI_PI);
+}
+
 void imki_tuned_gyro_reduce(const imk_tuned_gyro *d, imk_triad *triad)
 {
     const double speed = imk_tuned_gyro_speed(d);

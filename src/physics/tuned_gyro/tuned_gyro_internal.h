@@ -69,7 +69,13 @@ void imki_tuned_gyro_step(void *state, const imk_exposure *exposure, double *out
 void imki_tuned_gyro_observe(const void *state, double *signals);
 double imki_tuned_gyro_step_length(const void *design, const imk_physics_settings *settings);
 
+/* -3 dB of the loop, were it closed [Hz]. */
+double imki_tuned_gyro_bandwidth(const imk_tuned_gyro *design);
+
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_tuned_gyro_reduce(const imk_tuned_gyro *design, imk_triad *triad);
+
+/* The table of its derived quantities. */
+extern const imk_derived imki_tuned_gyro_derived[];
 
 #endif

@@ -190,4 +190,7 @@ double imki_fork_step_length(const void *place, const imk_physics_settings *sett
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_tuning_fork_reduce(const imk_tuning_fork *design, imk_triad *gyro);
 
+/* The table of its derived quantities. */
+extern const imk_derived imki_tuning_fork_derived[];
+
 #endif

@@ -21,7 +21,7 @@ static double area_of(const design_type *d)
     return d->width * d->thickness;
 }
 
-static double bending_stiffness(const design_type *d)
+double imki_beam_bending_stiffness(const design_type *d)
 {
     return d->modulus * area_of(d) * d->thickness * d->thickness / 12.0;
 }
@@ -30,14 +30,14 @@ double imk_vibrating_beam_frequency(const imk_vibrating_beam *d, int beam)
 {
     const double inverse = clamped_root / d->length;
     const double first = inverse * inverse / (2.0 * IMKI_PI) *
-                         sqrt(bending_stiffness(d) / (d->density * area_of(d)));
+                         sqrt(imki_beam_bending_stiffness(d) / (d->density * area_of(d)));
     return beam == 0 ? first : first * (1.0 + d->frequency_mismatch);
 }
 
 double imk_vibrating_beam_stiffening(const imk_vibrating_beam *d)
 {
     const double f = imk_vibrating_beam_frequency(d, 0);
-    return clamped_force * f * f * d->length * d->length / bending_stiffness(d);
+    return clamped_force * f * f * d->length * d->length / imki_beam_bending_stiffness(d);
 }
 
 double imk_vibrating_beam_slope(const imk_vibrating_beam *d)

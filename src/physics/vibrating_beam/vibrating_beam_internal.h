@@ -39,6 +39,8 @@ typedef struct imki_beams {
     imki_wander mount;
 } imki_beams;
 
+/* E I of one beam [N m^2]. */
+double imki_beam_bending_stiffness(const imk_vibrating_beam *design);
 /* Modal mass [kg]; two-sided densities of the angular frequency [rad^2/s^2/Hz] of one beam and of
  * the acceleration of the suspension's Brownian force [(m/s^2)^2/Hz]. */
 double imki_beam_mass(const imk_vibrating_beam *design);
@@ -59,5 +61,8 @@ void imki_beams_observe(const void *state, double *signals);
 
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_vibrating_beam_reduce(const imk_vibrating_beam *design, imk_triad *triad);
+
+/* The table of its derived quantities. */
+extern const imk_derived imki_vibrating_beam_derived[];
 
 #endif

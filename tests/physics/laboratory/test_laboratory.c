@@ -64,17 +64,19 @@ static double reading(unit *u, const imk_exposure *exposure, double x)
     const errors *e = &u->e;
     const double *f = exposure->specific_force, warm = exposure->temperature - 293.15;
     double y = fabs(x) < e->dead_band ? 0.0 : x, noise = 0.0;
-    y += e->bias + u->constant + e->bias_temperature * warm + (e->scale + e->scale_temperature * warm) * x +
-         e->k2 * x * x + e->koq * x * fabs(x) + e->k3 * x * x * x + 0.5 * e->asymmetry * fabs(x) +
+    y += e->bias + u->constant + e->bias_temperature * warm +
+         (e->scale + e->scale_temperature * warm) * x + e->k2 * x * x + e->koq * x * fabs(x) +
+         e->k3 * x * x * x + 0.5 * e->asymmetry * fabs(x) +
          e->temperature_rate * exposure->temperature_rate;
     for (int k = 0; k < 3; k++)
         y += e->linear[k] * f[k] + e->quadratic[k] * f[k] * f[k] +
              e->quadratic[3 + k] * f[k] * f[(k + 1) % 3];
     u->filtered += u->smoothing * (y - u->filtered);
     const double *w = exposure->angular_rate;
-    const uint64_t other = e->separate ? (uint64_t)(1e3 * fabs(20.0 + w[0] + 2.0 * w[1] + 3.0 * w[2]) +
-                                                    1e4 * fabs(10.0 + f[0] + 2 * f[1] + 3 * f[2]))
-                                       : 0;
+    const uint64_t other = e->separate
+                               ? (uint64_t)(1e3 * fabs(20.0 + w[0] + 2.0 * w[1] + 3.0 * w[2]) +
+                                            1e4 * fabs(10.0 + f[0] + 2 * f[1] + 3 * f[2]))
+                               : 0;
     imk_random_normals(u->random, u->stream, (other << 32) + u->next++, 1, &noise);
     return u->filtered + u->deviation * noise;
 }
@@ -297,15 +299,14 @@ static void count_verdicts(double computed, double noise, int counts[5])
         const double scale = noise * sqrt(CYCLES);
         const imk_laboratory_figure stated = {.value = computed};
         const imk_laboratory_figure found = {
-            .value = 1.0 + scale * mean,
-            .sigma = scale * sqrt(square / (CYCLES * (CYCLES - 1.0)))};
+            .value = 1.0 + scale * mean, .sigma = scale * sqrt(square / (CYCLES * (CYCLES - 1.0)))};
         counts[imk_laboratory_compare(&stated, &found, computed, &effort)]++;
     }
 }
 
-/* Of 20000 trials: false alarms 2 expected, more than 12 in one of 2e7 [Poisson]; a closed form that
- * is wrong by half is said to agree in less than 1 %, whatever the noise, and if the experiment is as
- * good as it is made, it differs or is untold. */
+/* Of 20000 trials: false alarms 2 expected, more than 12 in one of 2e7 [Poisson]; a closed form
+ * that is wrong by half is said to agree in less than 1 %, whatever the noise, and if the
+ * experiment is as good as it is made, it differs or is untold. */
 static void verdicts_have_the_stated_rates(void **state)
 {
     (void)state;
@@ -390,8 +391,8 @@ static void an_experiment_is_as_long_as_it_has_to_be(void **state)
     }
 }
 
-/* In a hundredth of the time nothing can be told; the time that is then said to be needed is enough,
- * and an experiment without noise needs none. */
+/* In a hundredth of the time nothing can be told; the time that is then said to be needed is
+ * enough, and an experiment without noise needs none. */
 static void the_time_that_is_needed_is_enough(void **state)
 {
     (void)state;

@@ -2,6 +2,8 @@
 /* Identified terms as tables: a row of values and a row of intervals for each term. */
 #include "identify_show_internal.h"
 
+#include "imukit/identify_plan.h"
+
 #include <math.h>
 
 /* One estimate per member (NULL: none on that channel): values, and intervals below them. */
@@ -131,20 +133,27 @@ void imki_identify_tables(const imk_identify_log *log, imk_result *result)
     }
 }
 
-/* The true value of a term in a model, SI; NaN when the model has no such axis. */
-static double true_value(const imk_model *truth, const imk_log_column *column, imk_noise_term term,
-                         double dt)
+/* The true value of a term in a model, SI; NaN when the model has no such axis. What an estimate
+ * without the model's filter tends to is the truth that the log can show. */
+static double true_value(const imk_identify_shown *shown, size_t channel, imk_noise_term term)
 {
+    const imk_log_column *column = imk_even_record_column(&shown->log->record, channel);
+    const imk_identification *r = &shown->log->result[channel];
     const imk_triad *triad =
-        column->quantity == IMK_QUANTITY_ANGULAR_RATE ? &truth->gyro : &truth->accel;
+        column->quantity == IMK_QUANTITY_ANGULAR_RATE ? &shown->truth->gyro : &shown->truth->accel;
     if (!triad->present || column->axis < 0 || column->axis >= triad->axis_count)
         return (double)NAN;
-    if (term == IMK_NOISE_QUANTIZATION)
-        return imk_noise_reading(&triad->noise, column->axis, dt);
-    const imk_axes *axes[IMK_NOISE_TERMS] = {NULL, &triad->noise.white,
-                                             &triad->noise.bias_instability,
-                                             &triad->noise.random_walk, &triad->noise.ramp};
-    return axes[term]->value[column->axis];
+    const double dt = shown->log->record.dt;
+    const imk_identify_seen seen =
+        r->filter.bandwidth > 0
+            ? (imk_identify_seen){triad->noise.white.value[column->axis],
+                                  imk_noise_reading(&triad->noise, column->axis, dt)}
+            : imk_identify_seen_of(triad, column->axis, dt, shown->log->duration,
+                                   r->term[IMK_NOISE_QUANTIZATION].present);
+    const double value[IMK_NOISE_TERMS] = {
+        seen.reading, seen.white, triad->noise.bias_instability.value[column->axis],
+        triad->noise.random_walk.value[column->axis], triad->noise.ramp.value[column->axis]};
+    return value[term];
 }
 
 static void truth_row(imk_table *table, const imk_identify_shown *shown, size_t channel,
@@ -152,7 +161,7 @@ static void truth_row(imk_table *table, const imk_identify_shown *shown, size_t 
 {
     const imk_log_column *column = imk_even_record_column(&shown->log->record, channel);
     const imk_estimate *e = &shown->log->result[channel].term[term];
-    const double truth = true_value(shown->truth, column, term, shown->log->record.dt);
+    const double truth = true_value(shown, channel, term);
     const bool ramp = term == IMK_NOISE_RAMP;
     if (isnan(truth) || (truth == 0 && !e->present) ||
         (ramp && shown->log->origin == IMK_IDENTIFY_RECORDS))

@@ -211,7 +211,8 @@ static const imki_concern concerns[] = {
      NULL},
     {IMK_VERDICT_COARSE, find_resolution, 0, IMK_FINDING_WARNING, "coarse",
      "the output step is so large against the noise that rounding errors are not white, so white "
-     "noise and quantization are unreliable; log with more digits or a smaller range",
+     "noise and quantization are unreliable; log with more digits or a smaller range, or, of a "
+     "sensor that counts its integral, at a lower rate",
      NULL},
     {0, find_unrest, 0, IMK_FINDING_WARNING, "unrest",
      "slow fluctuations that no sensor at rest has: it was carried, or stood on something that "

@@ -106,6 +106,8 @@ void imki_show_overview(const imk_physics_shown *p, imk_result *result)
                     imki_physics_name(p), named ? ": " : "", named ? instrument->title : "",
                     instrument->source);
     imki_show_design(p, result);
+    imk_result_line(result, "\nDerived quantities");
+    imki_show_derived(p, result);
     show_signals("Outputs", instrument->output_count, instrument->outputs, result);
     show_signals("Inside (--signals)", instrument->signal_count, instrument->signals, result);
     if (instrument->view_count > 0)

@@ -156,7 +156,8 @@ static void add_table(const imk_laboratory_result *r, bool gyro, imk_figure_buil
         imk_figure_point(figure, r->point[i].input / scale, r->point[i].computed / unit.scale);
 }
 
-/* Poses by number: the faces +x -x +y -y +z -z, then the edges between x and y, y and z, z and x. */
+/* Poses by number: the faces +x -x +y -y +z -z, then the edges between x and y, y and z, z and x.
+ */
 static void add_poses(const imk_laboratory_result *r, bool gyro, imk_figure_builder *figure)
 {
     char y[IMK_PHYSICS_LABEL];
@@ -191,13 +192,13 @@ static void add_warmth(const imk_laboratory_result *r, bool gyro, bool scale_fac
     }
     if (largest <= nothing * (scale_factor ? 1 : r->full_scale))
         return;
-    const imk_unit unit = scale_factor ? imk_unit_of("ppm")
-                                       : unit_for(gyro ? "rad/s" : "m/s^2", largest);
+    const imk_unit unit =
+        scale_factor ? imk_unit_of("ppm") : unit_for(gyro ? "rad/s" : "m/s^2", largest);
     const imk_panel panel = {
         .title = scale_factor ? "Scale factor by temperature" : "Bias by temperature",
         .x_label = "temperature [degC]",
-        .y_label = imki_physics_label(y, scale_factor ? "change of the scale factor"
-                                                      : "change of the bias", unit.text)};
+        .y_label = imki_physics_label(
+            y, scale_factor ? "change of the scale factor" : "change of the bias", unit.text)};
     imk_figure_panel(figure, &panel);
     add_measured(figure);
     for (int i = 0; i < r->warmth_count; i++) {
@@ -258,7 +259,8 @@ void imki_show_sweep_figure(const imk_physics_shown *p, imk_result *result)
     imk_figure_builder *figure = imk_result_figure(
         result, instrument->title, 2,
         "What the input, 1 g and the temperature change in the reading, with bars of two standard "
-        "deviations, and the gain for a sine. The lines are the closed forms. Directions 1 to 6 are "
+        "deviations, and the gain for a sine. The lines are the closed forms. Directions 1 to 6 "
+        "are "
         "+x, -x, +y, -y, +z, -z, then 7 to 10 between x and y, 11 to 14 between y and z, 15 to 18 "
         "between z and x.");
     if (r->point_count > 0)

@@ -136,8 +136,8 @@ void imki_show_sweep(const imk_physics_sweep *l, imk_result *result)
                       imk_physics_sweep_verdict(l, i, verdict, sizeof verdict));
     }
     show_zeros(l, IMK_LABORATORY_AGREES, "Zero in both", result);
-    show_zeros(l, IMK_LABORATORY_CANNOT_TELL, "Zero in the closed forms, not told by the experiment",
-               result);
+    show_zeros(l, IMK_LABORATORY_CANNOT_TELL,
+               "Zero in the closed forms, not told by the experiment", result);
 }
 
 static void show_points(const imk_laboratory_result *r, const char *si, imk_result *result)

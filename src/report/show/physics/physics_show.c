@@ -81,6 +81,8 @@ static void show_data(const imk_physics_shown *p, imk_result *result)
         run_data(p, r, result);
     else
         imki_reduced_data(p->model, p->settings->instrument->sensor, result);
+    if (!r)
+        imki_derived_data(p, result);
     if (l)
         imki_sweep_data(l, p->settings->instrument->sensor, result);
     imk_result_end(result);
@@ -115,6 +117,8 @@ static void show_models(const imk_physics_shown *p, const imk_physics_sweep *l, 
     if (reduce) {
         imk_result_line(result, "Error model by closed forms, one axis");
         imki_show_reduced(p->model, p->settings->instrument->sensor, result);
+        imk_result_line(result, "\nDerived quantities");
+        imki_show_derived(p, result);
     }
     if (l) {
         imk_result_line(result, "%sClosed forms against experiments", reduce ? "\n" : "");
@@ -155,6 +159,8 @@ void imk_show_physics_design(const imk_physics_shown *p, imk_result *result)
 {
     imk_result_heading(result, "Design");
     imki_show_design(p, result);
+    imk_result_heading(result, "Derived quantities");
+    imki_show_derived(p, result);
     imk_result_heading(result, "Reduced error model");
     imki_show_reduced(p->model, p->settings->instrument->sensor, result);
     imk_result_line(result, "From the design by closed forms; one axis, along x.");

@@ -16,6 +16,10 @@ void imki_design_data(const imk_physics_shown *p, imk_result *result);
 void imki_show_design(const imk_physics_shown *p, imk_result *result);
 void imki_show_overview(const imk_physics_shown *p, imk_result *result);
 
+/* physics_derived_show.c: what follows from the parts of the design. */
+void imki_show_derived(const imk_physics_shown *p, imk_result *result);
+void imki_derived_data(const imk_physics_shown *p, imk_result *result);
+
 /* physics_model_show.c: the stated parameters of a model of one axis, with extras such as
  * repeatability; and the results of experiments. */
 void imki_show_reduced(const imk_model *model, int sensor, imk_result *result);
