@@ -185,7 +185,7 @@ IMK_API size_t imk_laboratory_figures(const imk_model *model, int sensor,
 typedef enum imk_laboratory_verdict {
     /** No difference that matters: |difference| + 3 sigma is at most 0.3 of the size that matters,
      *  and the difference is within chance, or 1 % of that size. A closed form that is wrong by
-     * half of its value is called this in less than 1 % of the cases, whatever the noise. */
+     *  half of its value is called this in less than 1 % of the cases, whatever the noise. */
     IMK_LABORATORY_AGREES = 0,
     /** The difference is beyond chance, but within a tenth of the size that matters. */
     IMK_LABORATORY_CLOSE,
