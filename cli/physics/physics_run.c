@@ -105,10 +105,11 @@ int physics_run_make(const physics *p, imk_physics_log **run)
 int physics_sweep_make(const physics *p, imk_physics_sweep **sweep)
 {
     imk_error error = {.status = IMK_OK};
-    imk_thread_pool *pool = imk_thread_pool_create(p->options->threads.value);
-    const imk_executor executor = imk_thread_pool_executor(pool);
-    const imk_job job = {.executor = &executor};
-    const imk_status status = imk_physics_sweep_run(&p->settings, &job, sweep, &error);
-    imk_thread_pool_destroy(pool);
+    threaded_job job;
+    threaded_job_begin(&job, NULL, p->options->threads.value);
+    if (p->options->json)
+        job.job.progress = NULL;
+    const imk_status status = imk_physics_sweep_run(&p->settings, &job.job, sweep, &error);
+    threaded_job_end(&job);
     return status == IMK_OK ? -1 : physics_refused(p, &error);
 }

@@ -42,12 +42,14 @@ static const option input_option_table[] = {
 
 static const option run_option_table[] = {
     {"duration", OPTION_QUANTITY, AT(duration), .letter = 'd', .value = "TIME", .unit = "s",
-     .help = "run for this time and write the log; with --view: length of the view"},
+     .help = "run for this time and write the log; with --view: length of the view; with --sweep: "
+             "simulated time that each experiment may take"},
     {"output-rate", OPTION_QUANTITY, AT(output_rate), .value = "RATE", .unit = "Hz",
      .help = "samples per second; default 100Hz. With --view: points per second of the view"},
     {"level", OPTION_CHOICE, AT(level), .value = "LEVEL", .choices = "full|slow",
      .help = "full (the default): the dynamics of all parts; slow: a map or envelope without the "
-             "fast part"},
+             "fast part. Without it, --sweep does what takes long at the slow level, if there is "
+             "one"},
     {"step", OPTION_QUANTITY, AT(step), .value = "TIME", .unit = "s", .choices = "positive",
      .help = "longest internal step; default: what the instrument's accuracy needs. A step that "
              "would give wrong results is refused"},
@@ -96,9 +98,9 @@ static int check_tasks(const physics_options *o, const char *operand)
                                physics_verb.operands);
     if (o->show && (models || runs || o->plot || o->report || o->animate || o->json))
         return command_misused("--show prints the design and nothing else");
-    if (models && runs)
-        return command_misused("--duration runs the instrument and --%s does not: leave one out",
-                               model_task);
+    if (o->reduce && !o->sweep && runs)
+        return command_misused("--duration runs the instrument and --reduce does not: leave one "
+                               "out");
     if (o->view && (o->output || o->signals))
         return command_misused("%s: a view is drawn, not written; leave --view out to write a run",
                                o->output ? "-o" : "--signals");
@@ -304,13 +306,14 @@ static int open_design(physics *p)
 static int start(const physics_options *o, const char *operand)
 {
     physics p = {.options = o, .source = operand, .settings = imk_physics_log_default()};
-    p.settings.physics.level = o->level == 0 ? IMK_LEVEL_FULL : IMK_LEVEL_SLOW;
+    p.settings.physics.level = o->level == 1 ? IMK_LEVEL_SLOW : IMK_LEVEL_FULL;
+    p.settings.quick = o->level < 0;
     p.settings.physics.rate = o->output_rate;
     p.settings.physics.step = o->step;
     p.settings.physics.noise = !o->no_noise;
     p.settings.physics.seed = o->seed.value;
     p.settings.physics.run = (uint32_t)o->run.value;
-    p.settings.duration = o->duration;
+    p.settings.duration = isnan(o->duration) ? 0 : o->duration;
     p.settings.signal_rate = o->signal_rate;
     p.settings.view_duration = isnan(o->view_duration) ? 0 : o->view_duration;
     p.settings.view_rate = o->view && !isnan(o->view_rate) ? o->view_rate : 0;
@@ -339,6 +342,7 @@ static int run(int count, char **words)
                          .view_duration = missing,
                          .output_rate = missing,
                          .signal_rate = missing,
+                         .level = -1,
                          .seed = {.value = 1}};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&physics_verb, count, words, &o, operands);

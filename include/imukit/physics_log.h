@@ -40,10 +40,12 @@ typedef struct imk_physics_log_settings {
     const void *design;
     imk_physics_settings physics; /**< physics.rate is the rate of the rows */
     imk_physics_input input;
-    double duration;    /**< length of the run [s] */
+    double duration;    /**< length of the run [s]; of a sweep the simulated time that one of its
+                             experiments may take, 0: as the laboratory chooses */
     double signal_rate; /**< rate of the rows of signals [Hz]; 0: as the rows of outputs */
     /** Length and sampling rate of views [s], [Hz]; 0: as each view states. */
     double view_duration, view_rate;
+    bool quick;      /**< a sweep does what is long at the slow level, if there is one; true */
     bool view_input; /**< true: views use `input`; false: the input that each view states */
 } imk_physics_log_settings;
 
@@ -126,7 +128,9 @@ typedef struct imk_physics_sweep {
     size_t count;
     /** Figures by closed forms, and by experiments. */
     imk_laboratory_figure computed[IMK_LABORATORY_FIGURES_MAX], found[IMK_LABORATORY_FIGURES_MAX];
-    imk_allocator allocator; /**< allocator of this structure */
+    imk_laboratory_verdict verdict[IMK_LABORATORY_FIGURES_MAX];
+    double gain_bandwidth, gain_damping; /**< of the response by the closed forms [Hz], [1] */
+    imk_allocator allocator;             /**< allocator of this structure */
 } imk_physics_sweep;
 
 /** Find the error model by experiments (laboratory.h) in the surroundings that the settings state.
@@ -137,10 +141,12 @@ IMK_API imk_status imk_physics_sweep_run(const imk_physics_log_settings *setting
                                          imk_error *error);
 /** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_physics_sweep_free(imk_physics_sweep *sweep);
-/** Verdict on figure `index`: "agrees" when found and computed value differ by 4 sigma or less;
- *  "close" when they differ by 10 % of the computed value or less, as closed forms leave out terms
- *  of higher order; else "differs"; or "not measured". */
-IMK_API const char *imk_physics_sweep_verdict(const imk_physics_sweep *sweep, size_t index);
+/** Verdict on figure `index` in words: "agrees", "cannot tell: needs 3 h", "cannot tell: higher
+ *  orders of the input".
+ *  @param size  of `text` [bytes]; 100 are enough
+ *  @return text */
+IMK_API const char *imk_physics_sweep_verdict(const imk_physics_sweep *sweep, size_t index,
+                                              char *text, size_t size);
 
 /** Convert the numbers of an error of a validate or init function from SI to the unit of the field
  *  that the error names, for the message: `"30 kHz" is outside its valid range (limit 10 kHz)`.

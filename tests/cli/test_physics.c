@@ -373,6 +373,12 @@ static void test_sweep(void **state)
     const double found =
         json_number_value(json_object_get(json_object_get(bias, "experiment"), "value"));
     CHECK_CLOSE(found, computed, 0.01 * 9.80665); /* the design's bias is some mg */
+    assert_string_equal(json_string_value(json_object_get(bias, "verdict")), "agrees");
+    assert_true(json_number_value(json_object_get(json_object_get(bias, "seconds"), "value")) > 0);
+    assert_true(json_object_get(bias, "seconds_needed") && json_object_get(bias, "sigma"));
+    json_t *band = json_object_get(figures, "noise.bias_instability"); /* there is no noise */
+    assert_string_equal(json_string_value(json_object_get(band, "verdict")), "not measured");
+    assert_true(json_is_null(json_object_get(band, "seconds_needed")));
     json_decref(document);
     imk_model *model = malloc(sizeof *model);
     assert_non_null(model);
@@ -382,6 +388,12 @@ static void test_sweep(void **state)
     assert_int_equal(run("$I physics pendulous_servo --sweep --reduce --no-noise --level slow"), 0);
     check_contains(out, "Error model by closed forms, one axis\n", "--sweep");
     check_contains(out, "\nClosed forms against experiments\nparameter", "--sweep");
+    /* half a second of each experiment tells nothing about a navigation gyro's bias */
+    assert_int_equal(run("$I physics ring_laser --sweep --level slow --duration 0.5s"), 0);
+    check_contains(out, "cannot tell: needs", "--duration");
+    check_contains(out, "Zero in the closed forms, not told by the experiment: bias.fixed",
+                   "zeros");
+    assert_string_equal(err, ""); /* no progress where there is no terminal */
     sweep();
 }
 

@@ -130,7 +130,7 @@ static const published designs[] = {
       {SCALE, 0.5, 1.0, "%"},
       {BANDWIDTH, 46.5, 47.5, "Hz"},
       {RANGE, 1999.0, 2001.0, "deg/s"}}},
-    /* quartz [GNCTECH] */
+    /* quartz [GNCTECH2025] */
     {"quartz_fork",
      "tuning_fork",
      IMK_GRADE_TACTICAL,

@@ -20,6 +20,7 @@ imk_physics_log_settings imk_physics_log_default(void)
 {
     imk_physics_log_settings settings = {.cookie = settings_cookie,
                                          .physics = imk_physics_default(),
+                                         .quick = true,
                                          .input.exposure = imk_exposure_default()};
     settings.physics.rate = 100;
     settings.input.exposure.temperature = 293.15;

@@ -5,9 +5,27 @@
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
 
-#include <math.h>
+#include "imukit/readable.h"
 
-static const double sigmas_allowed = 4, part_allowed = 0.1;
+#include <stdint.h>
+#include <stdio.h>
+
+static bool tell(void *context, const char *stage, uint64_t done, uint64_t total)
+{
+    return imki_job_progress(context, stage, "points", done, total, NULL) == IMK_OK;
+}
+
+static void compare(const imk_model *reduced, int sensor, imk_physics_sweep *s)
+{
+    const imk_triad *t = sensor == IMK_GYRO ? &reduced->gyro : &reduced->accel;
+    s->count = imk_laboratory_figures(reduced, sensor, s->computed);
+    (void)imk_laboratory_figures(&s->result.model, sensor, s->found);
+    for (size_t i = 0; i < s->count; i++)
+        s->verdict[i] = imk_laboratory_compare(&s->computed[i], &s->found[i], s->result.matters[i],
+                                               &s->result.effort[i]);
+    s->gain_bandwidth = t->bandwidth.value[0];
+    s->gain_damping = t->damping.value[0];
+}
 
 imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_job *job,
                                  imk_physics_sweep **sweep, imk_error *error)
@@ -24,6 +42,10 @@ imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_jo
     settings.design = s->design;
     settings.physics = s->physics;
     settings.surroundings.temperature = s->input.exposure.temperature;
+    settings.longest = s->duration > 0 ? s->duration : 0;
+    settings.quick = s->quick;
+    settings.progress = tell;
+    settings.progress_context = (void *)(uintptr_t)job;
     if (!s->physics.noise)
         settings.record = 0;
     imki_arena arena = {.allocator = job->allocator};
@@ -38,8 +60,7 @@ imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_jo
     if (status == IMK_OK) {
         imk_instrument_reduce(s->instrument, s->design, reduced);
         made->allocator = job->allocator;
-        made->count = imk_laboratory_figures(reduced, s->instrument->sensor, made->computed);
-        (void)imk_laboratory_figures(&made->result.model, s->instrument->sensor, made->found);
+        compare(reduced, s->instrument->sensor, made);
     } else {
         imki_resize(&job->allocator, made, 0);
         made = NULL;
@@ -55,16 +76,19 @@ void imk_physics_sweep_free(imk_physics_sweep *sweep)
         imki_resize(&sweep->allocator, sweep, 0);
 }
 
-const char *imk_physics_sweep_verdict(const imk_physics_sweep *sweep, size_t index)
+const char *imk_physics_sweep_verdict(const imk_physics_sweep *sweep, size_t index, char *text,
+                                      size_t size)
 {
-    const imk_laboratory_figure *computed = &sweep->computed[index], *found = &sweep->found[index];
-    const double difference = fabs(found->value - computed->value);
-    const double sigma = hypot(found->sigma, computed->sigma);
-    if (isnan(found->value) || (found->value == 0 && found->sigma == 0))
-        return "not measured";
-    if (difference <= sigmas_allowed * sigma)
-        return "agrees";
-    if (difference <= part_allowed * fabs(computed->value))
-        return "close";
-    return "differs";
+    const imk_laboratory_effort *effort = &sweep->result.effort[index];
+    const char *word = imk_laboratory_verdict_text(sweep->verdict[index]);
+    char length[60];
+    if (sweep->verdict[index] != IMK_LABORATORY_CANNOT_TELL) {
+        snprintf(text, size, "%s", word);
+    } else if (effort->limit) {
+        snprintf(text, size, "%s: %s", word, effort->limit);
+    } else {
+        imk_readable_duration(effort->needs, length, sizeof length);
+        snprintf(text, size, "%s: needs %s", word, length);
+    }
+    return text;
 }

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { COOKIE = 0x494D4B22, TRIALS_MAX = IMK_LABORATORY_POINTS_MAX };
+enum { COOKIE = 0x494D4B22 };
 
 imk_laboratory imk_laboratory_default(void)
 {
@@ -16,26 +16,22 @@ imk_laboratory imk_laboratory_default(void)
                             .physics = imk_physics_default(),
                             .surroundings = imk_exposure_default(),
                             .points = 21,
-                            .settle = 0.2,
-                            .dwell = 1.0,
+                            .cycles = 6,
+                            .settle = -1.0,
+                            .dwell = 0.16,
                             .threshold = true,
                             .tumble = true,
                             .temperature = true,
                             .frequencies = 16,
-                            .record = 60.0};
-}
-
-static size_t record_samples(const imk_laboratory *laboratory)
-{
-    return laboratory->record > 0.0
-               ? imki_samples_in(laboratory->record * (1.0 - 1e-12), laboratory->physics.rate)
-               : 0;
+                            .record = -1.0,
+                            .quick = true};
 }
 
 size_t imk_laboratory_workspace_size(const imk_laboratory *laboratory)
 {
-    const size_t samples = record_samples(laboratory);
-    size_t size = TRIALS_MAX * imki_state_size(laboratory) + 2 * IMKI_ALIGNMENT_SLACK;
+    const size_t samples = imki_record_samples(laboratory);
+    size_t size =
+        sizeof(imki_bench) + IMKI_STATES * imki_state_size(laboratory) + 4 * IMKI_ALIGNMENT_SLACK;
     if (samples > 0)
         size += samples * sizeof(double) + imk_identify_workspace_size(samples);
     return size;
@@ -43,9 +39,6 @@ size_t imk_laboratory_workspace_size(const imk_laboratory *laboratory)
 
 static imk_status check(const imk_laboratory *l, void *state, imk_error *error)
 {
-    if (l->cookie != COOKIE || !l->instrument || !l->design)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "laboratory", NULL,
-                             "start from imk_laboratory_default(), with an instrument");
     if (!(l->full_scale >= 0.0 && l->full_scale <= 1e9))
         return imki_refuse(error, IMK_ERROR_RANGE, "full_scale", l->full_scale, 0.0,
                            "a full scale above 0, or 0 for the default");
@@ -53,9 +46,14 @@ static imk_status check(const imk_laboratory *l, void *state, imk_error *error)
         !(l->points >= 7 && l->points <= IMK_LABORATORY_POINTS_MAX && l->points % 2 == 1))
         return imki_refuse(error, IMK_ERROR_RANGE, "points", l->points, 0.0,
                            "an odd number from 7 to 101");
-    if (!(l->settle >= 0.0 && l->settle <= 1e6))
+    if (l->cycles < 3 || l->cycles > 255)
+        return imki_refuse(error, IMK_ERROR_RANGE, "cycles", l->cycles, 0.0, "3 to 255");
+    if (!(l->longest >= 0.0 && l->longest <= 1e12))
+        return imki_refuse(error, IMK_ERROR_RANGE, "longest", l->longest, 0.0,
+                           "a time from 0 to 1e12 s");
+    if (!(l->settle <= 1e6))
         return imki_refuse(error, IMK_ERROR_RANGE, "settle", l->settle, 0.0,
-                           "a time from 0 to 1e6 s");
+                           "a time from 0 to 1e6 s, or a negative number");
     if (!(l->dwell > 0.0 && l->dwell <= 1e6))
         return imki_refuse(error, IMK_ERROR_RANGE, "dwell", l->dwell, 0.0,
                            "a time above 0, up to 1e6 s");
@@ -66,10 +64,10 @@ static imk_status check(const imk_laboratory *l, void *state, imk_error *error)
           (l->highest <= 0.0 || l->lowest < l->highest)))
         return imki_refuse(error, IMK_ERROR_RANGE, "highest", l->highest, 0.0,
                            "a highest frequency above the lowest");
-    if (!(l->record >= 0.0 && l->record * l->physics.rate <= 1e10))
+    if (!(l->record * l->physics.rate <= 1e10))
         return imki_refuse(error, IMK_ERROR_RANGE, "record", l->record, 0.0,
                            "at most 1e10 samples");
-    if (l->record > 0.0 && record_samples(l) < 256)
+    if (l->record > 0.0 && imki_record_samples(l) < 256)
         return imki_refuse(error, IMK_ERROR_RANGE, "record", l->record, 0.0,
                            "a record of at least 256 samples");
     return imk_instrument_init(l->instrument, l->design, &l->physics, state, error);
@@ -81,102 +79,120 @@ static double full_scale_of(const imk_laboratory *laboratory, double range)
         return laboratory->full_scale;
     if (range > 0.0) /* a bias must not push a reading over the end */
         return 0.8 * range;
-    return laboratory->instrument->sensor == IMK_GYRO ? 1.0 : 10.0;
+    return laboratory->instrument->sensor == IMK_GYRO ? 0.1 : 10.0;
 }
 
-/* Noise by identification. An instrument without noise has none to find, which is no error. */
-static void static_record(const imk_laboratory *laboratory, char *state, double *samples,
-                          imk_laboratory_result *result)
+/* What reduce says, and then a model of one axis with no errors. */
+static void begin_model(imki_bench *b)
 {
-    const imk_instrument *instrument = laboratory->instrument;
-    const size_t count = record_samples(laboratory);
-    imk_identify_settings settings = imk_identify_default();
-    double outputs[IMK_INSTRUMENT_OUTPUTS_MAX];
-    settings.dt = 1.0 / laboratory->physics.rate;
-    if (imk_instrument_init(instrument, laboratory->design, &laboratory->physics, state, NULL) !=
-        IMK_OK)
-        return;
-    for (size_t i = imki_samples_in(laboratory->settle, laboratory->physics.rate); i > 0; i--)
-        instrument->step(state, &laboratory->surroundings, outputs);
-    for (size_t i = 0; i < count; i++) {
-        instrument->step(state, &laboratory->surroundings, outputs);
-        samples[i] = outputs[0];
-    }
-    result->has_noise =
-        imk_identify_channel(&settings, count, samples, &result->noise, samples + count,
-                             imk_identify_workspace_size(count), NULL) == IMK_OK;
-    if (!result->has_noise)
-        return;
-    imk_triad *triad = imk_model_triad_to_set(&result->model, laboratory->instrument->sensor);
-    const imk_axes bandwidth = triad->bandwidth; /* the shaker's, not that of the noise */
-    imk_identification_store(&result->noise, &result->model, instrument->sensor == IMK_ACCEL, 0);
-    if (bandwidth.value[0] > 0.0)
-        triad->bandwidth = bandwidth;
-    /* The roundings at the two ends of a record look like white noise of 2 Q/sqrt(T), see
-     * docs/theory/identification.md: what is not above that is not known. */
-    imk_axes *white = &triad->noise.white;
-    const double ends = 2.0 * triad->noise.quantization.value[0] / sqrt(laboratory->record);
-    white->sigma[0] = sqrt(white->sigma[0] * white->sigma[0] + ends * ends);
-}
-
-/* What reduce says of the axes. */
-typedef struct stated_axes {
+    const imk_instrument *instrument = b->laboratory->instrument;
+    imk_model *model = &b->result->model;
     double direction[IMK_AXES_MAX][3], pendulous_axis[IMK_AXES_MAX][3];
-    imk_axes range;
-    double bandwidth; /* of the first */
-} stated_axes;
-
-/* A model of one axis with no errors, and what reduce says of the axes. */
-static stated_axes begin_model(const imk_laboratory *laboratory, imk_laboratory_result *result)
-{
-    const imk_instrument *instrument = laboratory->instrument;
-    imk_model *model = &result->model;
-    imk_instrument_reduce(instrument, laboratory->design, model);
-    imk_triad *triad = imk_model_triad_to_set(&result->model, laboratory->instrument->sensor);
-    stated_axes stated = {.range = triad->range, .bandwidth = triad->bandwidth.value[0]};
-    memcpy(stated.direction, triad->direction, sizeof stated.direction);
-    memcpy(stated.pendulous_axis, triad->nonlinearity.pendulous_axis, sizeof stated.pendulous_axis);
+    imk_instrument_reduce(instrument, b->laboratory->design, model);
+    imk_triad *triad = b->triad = imk_model_triad_to_set(model, instrument->sensor);
+    const imk_axes range = triad->range;
+    b->bandwidth = triad->bandwidth.value[0];
+    b->result->full_scale = full_scale_of(b->laboratory, range.value[0]);
+    memcpy(direction, triad->direction, sizeof direction);
+    memcpy(pendulous_axis, triad->nonlinearity.pendulous_axis, sizeof pendulous_axis);
+    memcpy(b->pendulous_axis, pendulous_axis[0], sizeof b->pendulous_axis);
+    imki_matters(b, model);
     imk_model_default(model);
     (instrument->sensor == IMK_GYRO ? &model->accel : &model->gyro)->present = false;
     triad->axis_count = 1;
-    memcpy(triad->direction, stated.direction, sizeof stated.direction);
-    memcpy(triad->nonlinearity.pendulous_axis, stated.pendulous_axis, sizeof stated.pendulous_axis);
-    triad->range = stated.range;
-    return stated;
+    memcpy(triad->direction, direction, sizeof direction);
+    memcpy(triad->nonlinearity.pendulous_axis, pendulous_axis, sizeof pendulous_axis);
+    triad->range = range;
+}
+
+/* A step of the instruments takes 0.04 us where it is one of many to a sample, up to ten times as
+ * much where it is long, as there is more to do for each. */
+double imki_longest(const imki_bench *b, double rate, bool quick)
+{
+    static const double shared = 0.04e-6, own = 0.4e-6, long_step = 3e-4; /* [s] */
+    const double computing = quick ? 6.0 : 4.0;
+    const imk_laboratory *l = b->laboratory;
+    imk_physics_settings physics = imki_cycle(b, 0, quick);
+    if (l->longest > 0.0)
+        return l->longest;
+    physics.rate = rate;
+    double step = physics.step > 0.0 || !l->instrument->step_length
+                      ? physics.step
+                      : l->instrument->step_length(l->design, &physics);
+    step = step > 0.0 ? fmin(step, 1.0 / rate) : 1.0 / rate;
+    return computing * step / (shared + own * fmin(1.0, step / long_step));
+}
+
+/* The slow level where there is one, and how long experiments may be. */
+static void choose_levels(imki_bench *b)
+{
+    const imk_laboratory *l = b->laboratory;
+    imk_physics_settings physics = l->physics;
+    b->slow = physics.level;
+    physics.level = IMK_LEVEL_SLOW;
+    physics.step = 0.0;
+    if (l->quick &&
+        imk_instrument_init(l->instrument, l->design, &physics, b->states, NULL) == IMK_OK)
+        b->slow = IMK_LEVEL_SLOW;
+    for (int quick = 0; quick < 2; quick++)
+        b->longest[quick] = imki_longest(b, l->physics.rate, quick);
+}
+
+static void run_all(imki_bench *b)
+{
+    const imk_laboratory *l = b->laboratory;
+    imki_power_cycles(b);
+    if (l->points > 0 && !b->cancelled) {
+        imki_rate_table(b);
+        if (l->instrument->sensor == IMK_GYRO && !b->cancelled)
+            imki_cross_rates(b);
+    }
+    if (l->threshold && !b->cancelled)
+        imki_threshold(b);
+    if (l->tumble && !b->cancelled)
+        imki_tumble(b);
+    if (l->temperature && !b->cancelled)
+        imki_chamber(b);
+    if (l->frequencies > 0 && !b->cancelled)
+        imki_shaker(b);
+    if (b->samples > 0 && !b->cancelled)
+        imki_record(b);
+}
+
+/* Parts of the workspace. */
+static imki_bench *divide(const imk_laboratory *laboratory, void *workspace)
+{
+    char *place = (char *)imki_align(workspace);
+    imki_bench *b = (imki_bench *)(void *)place;
+    memset(b, 0, sizeof *b);
+    b->laboratory = laboratory;
+    b->states = (char *)imki_align(place + sizeof *b);
+    b->samples = imki_record_samples(laboratory);
+    b->record = (double *)imki_align(b->states + IMKI_STATES * imki_state_size(laboratory));
+    b->identification = imki_align(b->record + b->samples);
+    return b;
 }
 
 imk_status imk_laboratory_run(const imk_laboratory *laboratory, const imk_executor *executor,
                               imk_laboratory_result *result, void *workspace, size_t workspace_size,
                               imk_error *error)
 {
-    char *states = (char *)imki_align(workspace);
-    if (laboratory->instrument && workspace_size < imk_laboratory_workspace_size(laboratory))
+    if (laboratory->cookie != COOKIE || !laboratory->instrument || !laboratory->design)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "laboratory", NULL,
+                             "start from imk_laboratory_default(), with an instrument");
+    if (workspace_size < imk_laboratory_workspace_size(laboratory))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "laboratory", NULL,
                              "imk_laboratory_workspace_size() bytes");
-    const imk_status status = check(laboratory, states, error);
+    imki_bench *b = divide(laboratory, workspace);
+    const imk_status status = check(laboratory, b->states, error);
     if (status != IMK_OK)
         return status;
-    const imk_instrument *instrument = laboratory->instrument;
     memset(result, 0, sizeof *result);
-    const stated_axes stated = begin_model(laboratory, result);
-    result->full_scale = full_scale_of(laboratory, stated.range.value[0]);
-    imki_zero_readings(laboratory, states, executor, result);
-    if (laboratory->points > 0) {
-        imki_rate_table(laboratory, states, executor, result);
-        if (instrument->sensor == IMK_GYRO)
-            imki_cross_rates(laboratory, states, executor, result);
-    }
-    if (laboratory->threshold)
-        imki_threshold(laboratory, states, executor, result);
-    if (laboratory->tumble)
-        imki_tumble(laboratory, stated.pendulous_axis[0], states, executor, result);
-    if (laboratory->temperature)
-        imki_chamber(laboratory, states, executor, result);
-    if (laboratory->frequencies > 0)
-        imki_shaker(laboratory, stated.bandwidth, states, executor, result);
-    if (laboratory->record > 0.0)
-        static_record(laboratory, states,
-                      (double *)(void *)(states + TRIALS_MAX * imki_state_size(laboratory)),
-                      result);
-    return IMK_OK;
+    b->executor = executor;
+    b->result = result;
+    begin_model(b);
+    choose_levels(b);
+    b->settle = imki_settling_time(b);
+    run_all(b);
+    return b->cancelled ? imk_error_set(error, IMK_ERROR_CANCELLED, NULL, NULL, NULL) : IMK_OK;
 }

@@ -30,18 +30,6 @@ static void add_cross_axis(list *l, const imk_triad *t)
     }
 }
 
-/* What differs from run to run, and within one, counts as sigma. */
-static double spread_of(const imk_triad *t, int term, double sigma)
-{
-    if (term != IMK_MODEL_BIAS && term != IMK_MODEL_SCALE_FACTOR)
-        return sigma;
-    const bool bias = term == IMK_MODEL_BIAS;
-    const double wander = bias ? t->noise.bias_instability.value[0] : 0.0;
-    const double spread =
-        bias ? t->bias.repeatability.value[0] : t->scale_factor.repeatability.value[0];
-    return sqrt(sigma * sigma + spread * spread + wander * wander);
-}
-
 static void add_power(list *l, const imk_triad *t, int kind, const imki_field *field)
 {
     const imk_temperature_polynomial *p = (const void *)imki_field_values(field, t);
@@ -91,7 +79,7 @@ static void add_term(list *l, const imk_triad *t, int kind, int term)
         break;
     default:
         add(l, field->path[kind], field->si[kind], field->unit[kind], *value,
-            spread_of(t, term, *imki_field_sigmas(field, t)));
+            *imki_field_sigmas(field, t));
     }
 }
 
@@ -106,6 +94,11 @@ static const struct {
     {AT(bandwidth), {"bandwidth", "bandwidth", "Hz", "Hz", "Hz", "Hz"}},
     {AT(noise.quantization),
      {"noise.quantization", "noise.quantization", "rad", "m/s", "arcsec", "mm/s"}},
+    {AT(noise.reading_noise),
+     {"noise.reading_noise", "noise.reading_noise", "rad", "m/s", "arcsec", "mm/s"}},
+    {AT(noise.angle_white),
+     {"noise.angle_white", "noise.velocity_white", "rad/sqrt(Hz)", "m/s/sqrt(Hz)",
+      "arcsec/sqrt(Hz)", "mm/s/sqrt(Hz)"}},
     {AT(noise.white),
      {"noise.angle_random_walk", "noise.velocity_random_walk", "rad/s/sqrt(Hz)", "m/s^2/sqrt(Hz)",
       "deg/sqrt(h)", "ug/sqrt(Hz)"}},

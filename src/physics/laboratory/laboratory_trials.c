@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How the laboratory measures a single point, and fits to the readings of several. */
+/* How the laboratory measures a single point. */
 #include "laboratory_internal.h"
 
-#include "imukit/elementary.h"
-#include "imukit/linear_algebra.h"
-
 #include <math.h>
-#include <string.h>
 
-enum { BATCHES = 16, RAMP = 32 };
+enum { RAMP = 16 };
 
 size_t imki_state_size(const imk_laboratory *laboratory)
 {
     return (laboratory->instrument->state_size + 63) / 64 * 64;
+}
+
+size_t imki_samples_in(double time, double rate)
+{
+    const double count = ceil(time * rate);
+    return count > 1.0 ? (size_t)count : 1;
 }
 
 imki_trial imki_trial_of(const imk_laboratory *laboratory, double input)
@@ -25,10 +27,32 @@ imki_trial imki_trial_of(const imk_laboratory *laboratory, double input)
     return trial;
 }
 
-size_t imki_samples_in(double time, double rate)
+imk_physics_settings imki_cycle(const imki_bench *bench, size_t cycle, bool quick)
 {
-    const double count = ceil(time * rate);
-    return count > 1.0 ? (size_t)count : 1;
+    imk_physics_settings physics = bench->laboratory->physics;
+    physics.run = physics.run * 4096u + (uint32_t)cycle;
+    if (quick && physics.level != bench->slow) {
+        physics.level = bench->slow;
+        physics.step = 0.0;
+    }
+    return physics;
+}
+
+double imki_trial_time(const imki_bench *bench)
+{
+    const imk_laboratory *l = bench->laboratory;
+    const size_t ramp = bench->experiment.ramps ? RAMP : 0;
+    return (double)(imki_samples_in(bench->settle, l->physics.rate) +
+                    imki_samples_in(bench->experiment.dwell, l->physics.rate) + ramp) /
+           l->physics.rate;
+}
+
+bool imki_progress(imki_bench *bench, const char *stage, uint64_t done, uint64_t total)
+{
+    const imk_laboratory *l = bench->laboratory;
+    if (!bench->cancelled && l->progress && !l->progress(l->progress_context, stage, done, total))
+        bench->cancelled = true;
+    return !bench->cancelled;
 }
 
 /* The table is brought to speed: the input grows to its value in equal parts, one a sample. An
@@ -36,9 +60,9 @@ size_t imki_samples_in(double time, double rate)
 static void bring_to_speed(const imk_laboratory *laboratory, const imki_trial *trial, void *state)
 {
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX];
-    for (int i = 1; i < RAMP; i++) {
+    for (int i = 0; i < RAMP; i++) {
         imk_exposure exposure = trial->exposure;
-        const double missing = 1.0 - (double)i / RAMP;
+        const double missing = 1.0 - (i + 1.0) / RAMP;
         if (laboratory->instrument->sensor == IMK_GYRO)
             exposure.angular_rate[0] -= missing * trial->input;
         else
@@ -47,134 +71,81 @@ static void bring_to_speed(const imk_laboratory *laboratory, const imki_trial *t
     }
 }
 
-/* Mean of the dwell and its 1 sigma from the scatter of the means of its parts. */
-static void measure_constant(const imk_laboratory *laboratory, imki_trial *trial, void *state)
+/* Mean of the next readings. */
+static double mean_of(const imk_instrument *instrument, const imk_exposure *exposure,
+                      size_t samples, void *state)
 {
-    const imk_instrument *instrument = laboratory->instrument;
-    const double rate = laboratory->physics.rate;
-    const size_t part = (imki_samples_in(laboratory->dwell, rate) + BATCHES - 1) / BATCHES;
-    double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], batch[BATCHES], mean = 0.0, scatter = 0.0;
-    bring_to_speed(laboratory, trial, state);
-    for (size_t i = imki_samples_in(laboratory->settle, rate); i > 0; i--)
-        instrument->step(state, &trial->exposure, outputs);
-    for (int b = 0; b < BATCHES; b++) {
-        double sum = 0.0;
-        for (size_t i = 0; i < part; i++) {
-            instrument->step(state, &trial->exposure, outputs);
-            sum += outputs[0];
-        }
-        batch[b] = sum / (double)part;
-        mean += batch[b] / BATCHES;
+    double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], sum = 0.0;
+    for (size_t i = 0; i < samples; i++) {
+        instrument->step(state, exposure, outputs);
+        sum += outputs[0];
     }
-    for (int b = 0; b < BATCHES; b++)
-        scatter += (batch[b] - mean) * (batch[b] - mean);
-    trial->reading =
-        (imk_laboratory_point){trial->input, mean, sqrt(scatter / (BATCHES * (BATCHES - 1.0)))};
+    return sum / (double)samples;
 }
 
-/* Correlation of input and output with the cosine and the sine of the input's phase, over whole
- * cycles. The mean of a sine over a sample is what the instrument is exposed to. */
-static void measure_sine(const imk_laboratory *laboratory, size_t per_cycle, imki_trial *trial,
-                         void *state)
-{
-    const imk_instrument *instrument = laboratory->instrument;
-    const double angle = 2.0 * IMKI_PI / (double)per_cycle;
-    const double dt = 1.0 / (trial->frequency * (double)per_cycle);
-    const size_t settle = imki_samples_in(laboratory->settle + 4.0 / trial->frequency, 1.0 / dt);
-    const size_t wanted = imki_samples_in(laboratory->dwell, trial->frequency);
-    const size_t cycles = wanted < 4 ? 4 : wanted;
-    double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], out[2] = {0.0, 0.0}, in[2] = {0.0, 0.0};
-    for (size_t i = 0; i < settle + cycles * per_cycle; i++) {
-        const double begin = angle * (double)(i % per_cycle), middle = begin + 0.5 * angle;
-        const double mean = trial->input * (imk_cos(begin) - imk_cos(begin + angle)) / angle;
-        imk_exposure exposure = trial->exposure;
-        if (instrument->sensor == IMK_GYRO) {
-            exposure.angular_rate[0] += mean;
-            exposure.angular_acceleration[0] +=
-                trial->input * (imk_sin(begin + angle) - imk_sin(begin)) / dt;
-        } else {
-            exposure.specific_force[0] += mean;
-        }
-        instrument->step(state, &exposure, outputs);
-        if (i < settle)
-            continue;
-        const double c = imk_cos(middle), s = imk_sin(middle);
-        out[0] += outputs[0] * c;
-        out[1] += outputs[0] * s;
-        in[0] += mean * c;
-        in[1] += mean * s;
-    }
-    double phase = imk_atan2(out[0], out[1]) - imk_atan2(in[0], in[1]);
-    phase -= 2.0 * IMKI_PI * floor(phase / (2.0 * IMKI_PI) + 0.5);
-    const double ratio = (out[0] * out[0] + out[1] * out[1]) / (in[0] * in[0] + in[1] * in[1]);
-    trial->sine = (imk_laboratory_response){trial->frequency, sqrt(ratio), phase};
-}
-
-/* Samples to a cycle: as the sample rate gives, at least 64: holding the input and taking
- * the mean of the output then change the gain by less than 1e-3. */
-static size_t samples_per_cycle(const imk_laboratory *laboratory, double frequency)
-{
-    const double count = floor(laboratory->physics.rate / frequency + 0.5);
-    return count > 64.0 ? (size_t)count : 64;
-}
-
-typedef struct bench {
-    const imk_laboratory *laboratory;
-    imki_trial *trials;
-    char *states;
-} bench;
+typedef struct batch {
+    const imki_bench *bench;
+    size_t first;
+    double *y;
+} batch;
 
 static void measure(void *context, size_t item)
 {
-    const bench *b = context;
-    const imk_laboratory *laboratory = b->laboratory;
-    imki_trial *trial = &b->trials[item];
-    imk_physics_settings physics = laboratory->physics;
-    void *state = b->states + item * imki_state_size(laboratory);
-    size_t per_cycle = 1;
-    physics.occasion = (uint8_t)(item + 1);
-    if (trial->frequency > 0.0) {
-        per_cycle = samples_per_cycle(laboratory, trial->frequency);
-        physics.rate = trial->frequency * (double)per_cycle;
-    }
-    trial->sine = (imk_laboratory_response){trial->frequency, (double)NAN, (double)NAN};
-    trial->reading = (imk_laboratory_point){trial->input, (double)NAN, (double)NAN};
+    const batch *b = context;
+    const imk_laboratory *laboratory = b->bench->laboratory;
+    const imki_experiment *e = &b->bench->experiment;
+    const imki_trial *trial = &e->trial[item % e->rows];
+    const imk_physics_settings physics = imki_cycle(b->bench, b->first + item / e->rows, e->quick);
+    void *state = b->bench->states + item * imki_state_size(laboratory);
+    b->y[item] = (double)NAN;
     if (imk_instrument_init(laboratory->instrument, laboratory->design, &physics, state, NULL) !=
         IMK_OK)
         return;
-    if (trial->frequency > 0.0)
-        measure_sine(laboratory, per_cycle, trial, state);
-    else
-        measure_constant(laboratory, trial, state);
+    if (e->ramps)
+        bring_to_speed(laboratory, trial, state);
+    (void)mean_of(laboratory->instrument, &trial->exposure,
+                  imki_samples_in(b->bench->settle, physics.rate), state);
+    b->y[item] = mean_of(laboratory->instrument, &trial->exposure,
+                         imki_samples_in(e->dwell, physics.rate), state);
 }
 
-void imki_trials_run(const imk_laboratory *laboratory, size_t count, imki_trial *trials,
-                     char *states, const imk_executor *executor)
+/* Windows in which a step of half of full scale, at the highest temperature of the chamber, beside
+ * a run without it, still differs from the last ones by more than 1e-6 of itself and their scatter.
+ */
+double imki_settling_time(imki_bench *bench)
 {
-    bench b = {laboratory, trials, states};
-    imk_execute(executor, count, measure, &b);
+    enum { WINDOWS = 40, LAST = 10 };
+    static const double window = 0.1, small = 1e-6, warmer = 20.0; /* [s], [1], [K] */
+    const imk_laboratory *l = bench->laboratory;
+    const imk_physics_settings physics = imki_cycle(bench, 0, false);
+    imki_trial trial[2] = {imki_trial_of(l, 0.0),
+                           imki_trial_of(l, 0.5 * bench->result->full_scale)};
+    double change[WINDOWS] = {0.0}, end = 0.0, scatter = 0.0;
+    if (l->settle >= 0.0)
+        return l->settle;
+    trial[1].exposure.temperature += l->temperature ? warmer : 0.0;
+    for (size_t k = 0; k < 2; k++) {
+        void *state = bench->states;
+        if (imk_instrument_init(l->instrument, l->design, &physics, state, NULL) != IMK_OK)
+            return window;
+        bring_to_speed(l, &trial[k], state);
+        for (size_t i = 0; i < WINDOWS; i++)
+            change[i] +=
+                (k == 0 ? -1.0 : 1.0) * mean_of(l->instrument, &trial[k].exposure,
+                                                imki_samples_in(window, physics.rate), state);
+    }
+    for (size_t i = WINDOWS - LAST; i < WINDOWS; i++)
+        end += change[i] / LAST;
+    for (size_t i = WINDOWS - LAST; i < WINDOWS; i++) /* of noise, not of a drift */
+        scatter = fmax(scatter, fabs(change[i] - change[i - 1]));
+    size_t settled = WINDOWS - LAST;
+    while (settled > 0 && fabs(change[settled - 1] - end) <= small * fabs(end) + 3.0 * scatter)
+        settled--;
+    return 2.0 * window * (double)(settled + 1); /* what noise hides here may show in a mean */
 }
 
-/* ---- fits ------------------------------------------------------------------------------------ */
-
-bool imki_fit(size_t rows, size_t columns, const double *a, const double *y, double reading_sigma,
-              double *x, double *sigma)
+void imki_readings(imki_bench *bench, size_t first, size_t cycles, double *y)
 {
-    double qr[IMKI_FIT_ROWS * IMKI_FIT_COLUMNS], b[IMKI_FIT_ROWS], beta[IMKI_FIT_COLUMNS];
-    double covariance[IMKI_FIT_COLUMNS * IMKI_FIT_COLUMNS], variance = 0.0;
-    if (rows <= columns || rows > IMKI_FIT_ROWS || columns > IMKI_FIT_COLUMNS)
-        return false;
-    memcpy(qr, a, rows * columns * sizeof *a);
-    memcpy(b, y, rows * sizeof *y);
-    if (imk_qr_factor(rows, columns, qr, beta) != IMK_OK ||
-        imk_qr_solve(rows, columns, qr, beta, b, x) != IMK_OK ||
-        imk_qr_covariance(rows, columns, qr, covariance) != IMK_OK)
-        return false;
-    for (size_t i = columns; i < rows; i++) /* b is Q^T y: its tail is what the fit leaves */
-        variance += b[i] * b[i] / (double)(rows - columns);
-    if (variance < reading_sigma * reading_sigma)
-        variance = reading_sigma * reading_sigma;
-    for (size_t k = 0; k < columns; k++)
-        sigma[k] = sqrt(variance * covariance[k * columns + k]);
-    return true;
+    batch b = {bench, first, y};
+    imk_execute(bench->executor, cycles * bench->experiment.rows, measure, &b);
 }

@@ -4,6 +4,7 @@
 #include "physics_show_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { FIGURES_MAX = IMK_LABORATORY_FIGURES_MAX + 12 + 7 * IMK_TERMS_MAX };
@@ -95,25 +96,48 @@ void imki_reduced_data(const imk_model *model, int sensor, imk_result *result)
 
 /* ---- experiments ----------------------------------------------------------------------------- */
 
-/* Is there a value to show in one of the two? */
-static bool says_something(const imk_laboratory_figure *computed,
-                           const imk_laboratory_figure *found)
+/* A row for what the closed forms state, and for what was found although they do not. */
+static bool says_something(const imk_physics_sweep *l, size_t i)
 {
-    return computed->value != 0 || fabs(found->value) > 4 * found->sigma;
+    return l->computed[i].value != 0 || l->verdict[i] == IMK_LABORATORY_DIFFERS ||
+           l->verdict[i] == IMK_LABORATORY_CLOSE;
+}
+
+/* Terms that are zero in the closed forms, by their verdict. */
+static void show_zeros(const imk_physics_sweep *l, imk_laboratory_verdict verdict,
+                       const char *words, imk_result *result)
+{
+    char line[1200];
+    size_t length = 0;
+    for (size_t i = 0; i < l->count && length < sizeof line; i++)
+        if (!says_something(l, i) && l->verdict[i] == verdict)
+            length += (size_t)snprintf(line + length, sizeof line - length, "%s%s",
+                                       length > 0 ? ", " : "", l->computed[i].key);
+    if (length > 0)
+        imk_result_line(result, "%s: %s.", words, line);
 }
 
 void imki_show_sweep(const imk_physics_sweep *l, imk_result *result)
 {
+    char verdict[100];
     imk_table *table = imk_result_table(result, 0xeu);
     imk_table_row(table, "parameter\tclosed form\texperiment\t1 sigma\tunit\t");
     for (size_t i = 0; i < l->count; i++) {
         const imk_laboratory_figure *computed = &l->computed[i], *found = &l->found[i];
         const double scale = imk_unit_of(found->unit).scale;
-        if (says_something(computed, found))
-            imk_table_row(table, "%s\t%.5g\t%.5g\t%.2g\t%s\t%s", found->key,
-                          computed->value / scale, found->value / scale, found->sigma / scale,
-                          imki_unit_text(found->unit), imk_physics_sweep_verdict(l, i));
+        if (!says_something(l, i))
+            continue;
+        imk_table_row(table, "%s\t%.5g", found->key, computed->value / scale);
+        if (l->verdict[i] == IMK_LABORATORY_NOT_MEASURED)
+            imk_table_add(table, "-\t-");
+        else
+            imk_table_add(table, "%.5g\t%.2g", found->value / scale, found->sigma / scale);
+        imk_table_add(table, "%s\t%s", imki_unit_text(found->unit),
+                      imk_physics_sweep_verdict(l, i, verdict, sizeof verdict));
     }
+    show_zeros(l, IMK_LABORATORY_AGREES, "Zero in both", result);
+    show_zeros(l, IMK_LABORATORY_CANNOT_TELL,
+               "Zero in the closed forms, not told by the experiment", result);
 }
 
 static void show_points(const imk_laboratory_result *r, const char *si, imk_result *result)
@@ -124,6 +148,9 @@ static void show_points(const imk_laboratory_result *r, const char *si, imk_resu
         imk_result_quantity(result, "input", r->point[i].input, si);
         imk_result_quantity(result, "output", r->point[i].output, si);
         imk_result_quantity(result, "sigma", r->point[i].sigma, si);
+        imk_result_quantity(result, "error", r->point[i].error, si);
+        imk_result_quantity(result, "error_sigma", r->point[i].error_sigma, si);
+        imk_result_quantity(result, "computed", r->point[i].computed, si);
         imk_result_end(result);
     }
     imk_result_end(result);
@@ -150,7 +177,14 @@ void imki_sweep_data(const imk_physics_sweep *l, int sensor, imk_result *result)
         imk_result_quantity(result, "closed_form", computed->value, found->si);
         imk_result_quantity(result, "experiment", found->value, found->si);
         imk_result_quantity(result, "sigma", found->sigma, found->si);
-        imk_result_text(result, "verdict", imk_physics_sweep_verdict(l, i));
+        imk_result_text(result, "verdict", imk_laboratory_verdict_text(l->verdict[i]));
+        imk_result_quantity(result, "matters", r->matters[i], found->si);
+        imk_result_quantity(result, "seconds", r->effort[i].seconds, "s");
+        if (isfinite(r->effort[i].needs) && l->verdict[i] != IMK_LABORATORY_NOT_MEASURED)
+            imk_result_quantity(result, "seconds_needed", r->effort[i].needs, "s");
+        else
+            imk_result_null(result, "seconds_needed");
+        imk_result_text(result, "limit", r->effort[i].limit ? r->effort[i].limit : "");
         imk_result_end(result);
     }
     imk_result_end(result);
