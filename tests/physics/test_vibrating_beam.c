@@ -342,6 +342,32 @@ static void beyond_buckling_frequencies_stay(void **state)
     }
 }
 
+/* A modulus that jumps between 1 % and three times its value makes the amplitude jump, and the
+ * drive brings it back: any excess to 1.5 of the square in 55 cycles, the rest by e^-1 in each 50.
+ */
+static void jumps_of_the_modulus_die_out(void **state)
+{
+    (void)state;
+    imk_vibrating_beam d = plain();
+    d.frequency_temperature = -0.01;
+    const imk_physics_settings settings = quiet(1e4);
+    void *run_state = started(beam, &d, &settings);
+    imk_exposure exposure = force_of(500.0);
+    double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], signals[IMK_INSTRUMENT_SIGNALS_MAX];
+    for (int i = 0; i < 60; i++) {
+        exposure.temperature = i % 2 == 0 ? 500.0 : 100.0;
+        beam->step(run_state, &exposure, outputs);
+        beam->observe(run_state, signals);
+        assert_true(isfinite(outputs[0]) && isfinite(signals[3]) && isfinite(signals[4]));
+    }
+    exposure.temperature = d.temperature;
+    run(beam, run_state, &exposure, 500, 0, NULL); /* 2000 cycles */
+    beam->observe(run_state, signals);
+    CHECK_RELATIVE(signals[3], d.amplitude, 1e-9);
+    CHECK_RELATIVE(signals[4], d.amplitude, 1e-9);
+    free(run_state);
+}
+
 static void the_default_is_of_a_class_with_vibrating_beams(void **state)
 {
     (void)state;
@@ -371,6 +397,7 @@ int main(void)
         cmocka_unit_test(records_identify_as_reduced),
         cmocka_unit_test(impossible_designs_are_refused),
         cmocka_unit_test(beyond_buckling_frequencies_stay),
+        cmocka_unit_test(jumps_of_the_modulus_die_out),
         cmocka_unit_test(the_default_is_of_a_class_with_vibrating_beams),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -149,13 +149,17 @@ static void tune(const imki_beams *s, imki_beam *b)
     b->turn_sin = imk_sin(w * s->h);
 }
 
+/* The drive pulls the square r of the amplitude back by r' = r (1 - r)/tau. A large r, which a jump
+ * of temperature may leave, needs the whole solution. */
 static void oscillate(const imki_beams *s, imki_beam *b)
 {
     const double nominal = s->d.amplitude * s->d.amplitude;
     for (size_t i = 0; i < s->steps; i++) {
         const double x = b->turn_cos * b->x + b->turn_sin * b->y + b->kick * imki_draw(&b->noise);
         const double y = b->turn_cos * b->y - b->turn_sin * b->x + b->kick * imki_draw(&b->noise);
-        const double factor = 1.0 + 0.5 * s->pull * (1.0 - (x * x + y * y) / nominal);
+        const double excess = (x * x + y * y) / nominal;
+        const double factor = excess < 4.0 ? 1.0 + 0.5 * s->pull * (1.0 - excess)
+                                           : 1.0 / sqrt(1.0 + s->pull * (excess - 1.0));
         b->cycles += b->x < 0.0 && x >= 0.0;
         b->x = x * factor;
         b->y = y * factor;
