@@ -105,6 +105,7 @@ draw pendulous_servo-sweep pendulous_servo --sweep
 draw vibrating_beam-two-beams-drift-apart vibrating_beam --view two
 draw vibrating_beam-the-force-on-the-beams vibrating_beam --view "the force"
 move vibrating_beam-the-beat-of-the-beams vibrating_beam --view "the beat"
+draw vibrating_beam-sweep vibrating_beam --sweep
 
 case drift-navigation in
     *"$only"*) "$imukit" drift navigation --plot "$images/drift-navigation.svg" >"$images/.draw.log" ;;

@@ -24,12 +24,13 @@ imk_vibrating_beam imk_vibrating_beam_default(void)
                             .density = 2650.0,
                             .quality = 10000.0,
                             .amplitude = 1e-6,
+                            .pickoff_noise = 3.0 * 1e-9,
                             .frequency_mismatch = 0.02,
                             .frequency_temperature = -20.0 * 1e-6,
                             .temperature_mismatch = 0.4e-6,
                             .suspension_frequency = 1500.0,
                             .suspension_damping = 0.4,
-                            .clock = 40e6,
+                            .clock = 100e6,
                             .range = 70.0 * IMK_STANDARD_GRAVITY,
                             .temperature = 293.15};
     /* the mass that makes 80 Hz/g, the length that makes 40 kHz */
@@ -48,7 +49,7 @@ static const imk_design_field fields[] = {
     CHOICE("arrangement", arrangement, "pair|single",
            "one beam, or two of which one is pushed and one pulled"),
     CHOICE("readout", readout, "squares|frequencies",
-           "difference of squares, which is linear, or of frequencies"),
+           "difference of squares, which is nearly linear, or of frequencies"),
     NUMBER("beam.length", length, "mm", 1e-6, 1.0, "between the clamps"),
     NUMBER("beam.width", width, "um", 1e-8, 0.1, "across the bending"),
     NUMBER("beam.thickness", thickness, "um", 1e-8, 0.1, "along the bending"),
@@ -56,6 +57,8 @@ static const imk_design_field fields[] = {
     NUMBER("beam.density", density, "kg/m^3", 1.0, 3e4, "of the material"),
     ABOVE("beam.quality", quality, "1", 0.5, 1e9, "quality factor: an oscillator has Q above 1/2"),
     ABOVE("beam.amplitude", amplitude, "um", 0.0, 1e-3, "of its middle, peak"),
+    NUMBER("beam.pickoff_noise", pickoff_noise, "nm", 0.0, 1e-3,
+           "rms of what the comparator gets beside the motion"),
     NUMBER("beam.frequency_mismatch", frequency_mismatch, "ppm", -0.2, 0.2,
            "second beam against the first, relative"),
     NUMBER("beam.frequency_temperature", frequency_temperature, "ppm/K", -0.01, 0.01,
@@ -80,7 +83,7 @@ static const imk_design_field fields[] = {
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 /* What the equations suppose: a slender beam, a clock that tells two crossings apart, and an
- * amplitude that thermal motion, sqrt(kT/m)/w, does not hide. */
+ * amplitude that neither thermal motion, sqrt(kT/m)/w, nor the pickoff's noise hides. */
 static imk_status check_beam(const design_type *d, imk_error *error)
 {
     const double f1 = imk_vibrating_beam_frequency(d, 0), f2 = imk_vibrating_beam_frequency(d, 1);
@@ -96,24 +99,31 @@ static imk_status check_beam(const design_type *d, imk_error *error)
     if (!(d->amplitude >= 10.0 * thermal))
         return imki_conflict(error, "beam.amplitude", d->amplitude, 10.0 * thermal,
                              "at least ten times the thermal motion");
+    if (!(d->amplitude >= 10.0 * d->pickoff_noise))
+        return imki_conflict(error, "beam.pickoff_noise", d->pickoff_noise, 0.1 * d->amplitude,
+                             "at most a tenth of the amplitude, or crossings are counted twice");
     return IMK_OK;
 }
 
+/* Mount and mass push one beam; nine tenths of the buckling load leave room for temperature. */
 static imk_status check(const void *given, imk_error *error)
 {
     const imk_vibrating_beam *d = given;
     imk_status status = check_beam(d, error);
     if (status != IMK_OK)
         return status;
-    const double f1 = imk_vibrating_beam_frequency(d, 0), f2 = imk_vibrating_beam_frequency(d, 1);
-    const double least = f1 < f2 ? f1 : f2;
-    const double load = d->proof_mass * (1.0 + fabs(d->proof_mass_error)) * d->range +
-                        fabs(d->mount_force) +
-                        6.0 * (d->mount_force_repeatability + d->mount_force_instability);
-    const double limit = 0.9 * least * least / imk_vibrating_beam_stiffening(d);
-    if (!(load < limit))
-        return imki_conflict(error, "proof_mass.range", load, limit,
-                             "a smaller force: a beam would come near buckling (forces in N)");
+    const double limit = 0.9 * imk_vibrating_beam_buckling(d);
+    const double mount =
+        fabs(d->mount_force) + 6.0 * (d->mount_force_repeatability + d->mount_force_instability);
+    if (!(mount < limit))
+        return imki_conflict(error, "mount.force", mount, limit,
+                             "a smaller force with six of its sigmas: nine tenths of what buckles "
+                             "a beam");
+    const double most = (limit - mount) / (d->proof_mass * (1.0 + fabs(d->proof_mass_error)));
+    if (!(d->range < most))
+        return imki_conflict(error, "proof_mass.range", d->range, most,
+                             "less: mass times range and the mount's force come to nine tenths of "
+                             "what buckles a beam");
     return IMK_OK;
 }
 
@@ -121,26 +131,23 @@ static imk_status check(const void *given, imk_error *error)
 
 static void step(void *state, const imk_exposure *exposure, double *outputs)
 {
-    const design_type *d = imki_beams_design(state);
+    const imki_beams *s = state;
+    const design_type *d = &s->d;
     double f[2];
     imki_beams_advance(state, exposure, f);
-    const double f01 = imk_vibrating_beam_frequency(d, 0), f02 = imk_vibrating_beam_frequency(d, 1);
-    const double both = f01 * f01 + f02 * f02;
-    const double reading = imki_beams_reading(d, f[0], f[1]);
-    outputs[0] = reading > d->range ? d->range : reading < -d->range ? -d->range : reading;
+    outputs[0] = imki_clamped(imki_beams_reading(d, f[0], f[1]), d->range);
     outputs[1] = f[0];
     outputs[2] = f[1];
-    outputs[3] = d->frequency_temperature != 0.0 && d->arrangement == IMK_BEAM_PAIR
-                     ? d->temperature +
-                           (f[0] * f[0] + f[1] * f[1] - both) / (both * d->frequency_temperature)
-                     : d->temperature;
+    outputs[3] = d->temperature;
+    if (d->frequency_temperature != 0.0 && d->arrangement == IMK_BEAM_PAIR)
+        outputs[3] += imki_beams_warmth(d, s->series, f[0], f[1]);
 }
 
 static const imk_signal outputs[] = {
     {"specific_force", "m/s^2", "m/s^2", "reading"},
     {"frequency_1", "Hz", "Hz", "of the first beam"},
     {"frequency_2", "Hz", "Hz", "of the second beam"},
-    {"temperature", "K", "degC", "told by the sum of the squares of a pair"},
+    {"temperature", "K", "degC", "told by both frequencies of a pair"},
 };
 static const imk_signal signals[] = {
     {"displacement_1", "m", "um", "of the middle of the first beam"},

@@ -17,12 +17,12 @@
 #include <string.h>
 
 /* Sources of randomness, fixed for ever. */
-enum { SOURCE_SUSPENSION = 0, SOURCE_BEAM_1 = 1 };
+enum { SOURCE_SUSPENSION = 0, SOURCE_BEAM_1 = 1, SOURCE_EDGES_1 = 3 };
 enum { WANDER_MOUNT = 0 };
 
 static const double drive_cycles = 50.0; /* time constant of the amplitude control */
 
-/* No beam is faster: at the limit of validate, 1.9 f_0^2. */
+/* No beam is faster at T_0: f^2 = 1.906 f_0^2 under IMKI_BEAM_LOAD_MAX. */
 static double highest_frequency(const imk_vibrating_beam *d)
 {
     const double f1 = imk_vibrating_beam_frequency(d, 0), f2 = imk_vibrating_beam_frequency(d, 1);
@@ -88,26 +88,23 @@ imk_status imki_beams_start(const void *design, const imk_physics_settings *sett
     if (status != IMK_OK)
         return status;
     start_suspension(s);
-    s->stiffening = imk_vibrating_beam_stiffening(d);
-    const double density = imki_beam_phase_density(d);
-    s->kick =
-        s->slow ? sqrt(density * s->h) / (2.0 * IMKI_PI) : sqrt(density * s->h) * d->amplitude;
+    s->square = imk_vibrating_beam_frequency(d, 0) * imk_vibrating_beam_frequency(d, 0);
+    s->load_per_force = imki_beam_load_per_force(d);
+    imki_load_series_make(s->series);
     s->pull = -imk_expm1(-s->h * imk_vibrating_beam_frequency(d, 0) / drive_cycles);
     for (int i = 0; i < 2; i++) {
-        s->frequency_0[i] = imk_vibrating_beam_frequency(d, i);
-        s->beam[i].y = d->amplitude;
-        s->beam[i].frequency = s->frequency_0[i];
-        imki_draws_start(&s->beam[i].noise, settings, (uint8_t)(SOURCE_BEAM_1 + i));
+        imki_beam *b = &s->beam[i];
+        const double turn = sqrt(imki_beam_phase_density(d, i) * s->h); /* 1 sigma in a step */
+        b->kick = s->slow ? turn / (2.0 * IMKI_PI) : turn * d->amplitude;
+        b->y = d->amplitude;
+        b->frequency = imk_vibrating_beam_frequency(d, i);
+        imki_draws_start(&b->noise, settings, (uint8_t)(SOURCE_BEAM_1 + i));
+        imki_draws_start(&b->edges, settings, (uint8_t)(SOURCE_EDGES_1 + i));
     }
     imki_draws_start(&s->suspension, settings, SOURCE_SUSPENSION);
     imki_wander_start(&s->mount, settings, WANDER_MOUNT, d->mount_force_repeatability,
                       d->mount_force_instability);
     return IMK_OK;
-}
-
-const imk_vibrating_beam *imki_beams_design(const void *state)
-{
-    return &((const imki_beams *)state)->d;
 }
 
 /* What the beams feel at the end of a hold [m/s^2], within the stops. */
@@ -127,13 +124,21 @@ static double suspended(imki_beams *s, double force)
     return s->mass[0];
 }
 
-/* Frequency of a beam under an axial force and a temperature, and the turn of a step. */
-static void tune(const imki_beams *s, imki_beam *b, int number, double force, double warm)
+/* What temperature makes of both beams; a push on one is a pull on the other. */
+static void warm_up(imki_beams *s, double warm)
 {
-    const double c = s->d.frequency_temperature + (number == 1 ? s->d.temperature_mismatch : 0.0);
-    const double f0 = s->frequency_0[number];
-    const double square = f0 * f0 * (1.0 + c * warm) + s->stiffening * force;
-    b->frequency = sqrt(square > 0.01 * f0 * f0 ? square : 0.01 * f0 * f0);
+    for (int k = 0; k < 2; k++) {
+        const double stiffness = imki_beam_stiffness(&s->d, k, warm);
+        s->beam[k].square = s->square * stiffness;
+        s->beam[k].load_per_force = (k == 0 ? 1.0 : -1.0) * s->load_per_force / stiffness;
+    }
+}
+
+/* Frequency of a beam under the force on the first, and the turn of a step. */
+static void tune(const imki_beams *s, imki_beam *b)
+{
+    const double load = b->load_per_force * s->force;
+    b->frequency = sqrt(b->square * imki_load_series_at(s->series, load));
     if (s->slow)
         return;
     const double w = 2.0 * IMKI_PI * b->frequency;
@@ -144,13 +149,17 @@ static void tune(const imki_beams *s, imki_beam *b, int number, double force, do
     b->turn_sin = imk_sin(w * s->h);
 }
 
+/* The drive pulls the square r of the amplitude back by r' = r (1 - r)/tau. A large r, which a jump
+ * of temperature may leave, needs the whole solution. */
 static void oscillate(const imki_beams *s, imki_beam *b)
 {
     const double nominal = s->d.amplitude * s->d.amplitude;
     for (size_t i = 0; i < s->steps; i++) {
-        const double x = b->turn_cos * b->x + b->turn_sin * b->y + s->kick * imki_draw(&b->noise);
-        const double y = b->turn_cos * b->y - b->turn_sin * b->x + s->kick * imki_draw(&b->noise);
-        const double factor = 1.0 + 0.5 * s->pull * (1.0 - (x * x + y * y) / nominal);
+        const double x = b->turn_cos * b->x + b->turn_sin * b->y + b->kick * imki_draw(&b->noise);
+        const double y = b->turn_cos * b->y - b->turn_sin * b->x + b->kick * imki_draw(&b->noise);
+        const double excess = (x * x + y * y) / nominal;
+        const double factor = excess < 4.0 ? 1.0 + 0.5 * s->pull * (1.0 - excess)
+                                           : 1.0 / sqrt(1.0 + s->pull * (excess - 1.0));
         b->cycles += b->x < 0.0 && x >= 0.0;
         b->x = x * factor;
         b->y = y * factor;
@@ -159,7 +168,7 @@ static void oscillate(const imki_beams *s, imki_beam *b)
 
 static void count_phase(const imki_beams *s, imki_beam *b)
 {
-    b->phase += b->frequency * s->h + s->kick * imki_draw(&b->noise);
+    b->phase += b->frequency * s->h + b->kick * imki_draw(&b->noise);
     const double whole = floor(b->phase);
     b->cycles += (int64_t)whole;
     b->phase -= whole;
@@ -174,7 +183,7 @@ static double fraction_of(const imki_beams *s, const imki_beam *b)
     return fraction < 0.0 ? fraction + 1.0 : fraction;
 }
 
-/* How long ago the last crossing was, by the ticks of the clock. */
+/* How long ago the last crossing was, by the comparator's edge and the ticks of the clock. */
 static double rounded_age(const imki_beams *s, double age)
 {
     if (s->d.clock <= 0.0)
@@ -186,7 +195,8 @@ static double rounded_age(const imki_beams *s, double age)
  * sample without a crossing keeps the reading. */
 static double read_counter(const imki_beams *s, imki_beam *b, double sample, double before)
 {
-    const double age = rounded_age(s, fraction_of(s, b) / b->frequency);
+    const double edge = imki_beam_edge(&s->d, b->frequency) * imki_draw(&b->edges);
+    const double age = rounded_age(s, fraction_of(s, b) / b->frequency + edge);
     const double time = sample + b->crossing - age;
     double reading = before;
     if (b->started && b->cycles > 0)
@@ -203,15 +213,15 @@ void imki_beams_advance(void *state, const imk_exposure *exposure, double freque
 {
     imki_beams *s = state;
     const imk_vibrating_beam *d = &s->d;
-    const double warm = exposure->temperature - d->temperature;
     const double mass = d->proof_mass * (1.0 + d->proof_mass_error);
     const double mount = d->mount_force + imki_wander_next(&s->mount);
     const double sample = s->hold * (double)s->forces;
+    warm_up(s, exposure->temperature - d->temperature);
     for (size_t i = 0; i < s->forces; i++) {
         s->force = mass * suspended(s, exposure->specific_force[0]) + mount;
         for (int k = 0; k < 2; k++) {
             imki_beam *b = &s->beam[k];
-            tune(s, b, k, k == 0 ? s->force : -s->force, warm);
+            tune(s, b);
             if (s->slow)
                 count_phase(s, b);
             else
