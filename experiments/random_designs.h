@@ -1,0 +1,364 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Designs at random, and what becomes of one: it is refused in words, or it is run at its levels,
+ * reduced by its closed forms, and swept by the laboratory. */
+#ifndef IMUKIT_RANDOM_DESIGNS_H
+#define IMUKIT_RANDOM_DESIGNS_H
+
+#include "imukit/physics.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* How a design is made from the default one. */
+enum { MOVE_FEW = 0, MOVE_ALL, MOVES };
+static const char *const move_names[] = {"few", "all"};
+
+/* What became of it. REFUSED: by the check of the design. UNFIT: by the start of a run, for its
+ * sample rate or number of steps. */
+enum { DESIGN_REFUSED = 0, DESIGN_UNFIT, DESIGN_RAN, DESIGN_SWEPT, DESIGN_WRONG, DESIGN_ENDS };
+
+typedef struct design_outcome {
+    int end;
+    imk_error error;    /* of REFUSED and UNFIT */
+    char wrong[160];    /* of WRONG: what is wrong */
+    double sweep_steps; /* internal steps that a sweep needs */
+    size_t figures;
+    double computed[IMK_LABORATORY_FIGURES_MAX], found[IMK_LABORATORY_FIGURES_MAX];
+    double sigma[IMK_LABORATORY_FIGURES_MAX]; /* of their difference */
+    double full_scale;                        /* of the sweep */
+    double scatter;                           /* of its readings without input */
+} design_outcome;
+
+/* ---- a design at random ---------------------------------------------------------------------- */
+
+/* splitmix64: the same designs everywhere */
+typedef struct design_random {
+    uint64_t state;
+} design_random;
+
+static inline double design_uniform(design_random *random)
+{
+    uint64_t z = random->state += UINT64_C(0x9E3779B97F4A7C15);
+    z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+static inline design_random design_random_of(uint64_t seed, const char *name, int move, int number)
+{
+    design_random random = {seed};
+    for (; *name; name++)
+        random.state = (random.state ^ (unsigned char)*name) * UINT64_C(0x100000001B3);
+    random.state ^= ((uint64_t)move << 32) + (uint64_t)number * UINT64_C(0xD1342543DE82EF95);
+    (void)design_uniform(&random);
+    return random;
+}
+
+/* A temperature of some zero point, which is moved by kelvins and not by a factor. */
+static inline bool is_temperature(const imk_design_field *field)
+{
+    return strcmp(field->unit, "degC") == 0 || strcmp(field->unit, "K") == 0;
+}
+
+/* FEW: by up to three decades, ALL: by up to 40 %, drawn again if that is beyond the range. A number
+ * that is 0 has no size of its own: FEW makes it a part of its range, from a billionth to a
+ * thousandth. Signs are turned where the range has both. */
+static inline double number_beside(const imk_design_field *field, double usual, int move,
+                                   design_random *random)
+{
+    const double u = 2.0 * design_uniform(random) - 1.0;
+    const bool turns = field->minimum < 0.0 && design_uniform(random) < 0.5;
+    if (is_temperature(field))
+        return usual + (move == MOVE_FEW ? 100.0 : 20.0) * u;
+    if (move == MOVE_ALL)
+        return usual * (1.0 + 0.4 * u) * (turns && design_uniform(random) < 0.25 ? -1.0 : 1.0);
+    const double size = usual != 0.0 ? usual * pow(10.0, 3.0 * u)
+                                     : field->maximum * pow(10.0, -6.0 + 3.0 * u);
+    return turns ? -size : size;
+}
+
+static inline double moved_number(const imk_design_field *field, double usual, int move,
+                                  design_random *random)
+{
+    double value = number_beside(field, usual, move, random);
+    if (move == MOVE_ALL)
+        while (value < field->minimum || value > field->maximum)
+            value = number_beside(field, usual, move, random);
+    return value;
+}
+
+static inline int choices_in(const char *choices)
+{
+    int count = 1;
+    for (; *choices; choices++)
+        count += *choices == '|';
+    return count;
+}
+
+static inline void move_field(const imk_design_field *field, void *design, int move,
+                              design_random *random)
+{
+    char *place = (char *)design + field->offset;
+    double value;
+    int whole;
+    bool yes;
+    /* where all parameters are moved, the words mostly stay: they are other instruments */
+    const bool word = move == MOVE_FEW || design_uniform(random) < 0.25;
+    switch (field->kind) {
+    case IMK_DESIGN_NUMBER:
+        memcpy(&value, place, sizeof value);
+        value = moved_number(field, value, move, random);
+        memcpy(place, &value, sizeof value);
+        break;
+    case IMK_DESIGN_COUNT:
+        memcpy(&whole, place, sizeof whole);
+        value = floor(moved_number(field, (double)whole, move, random) + 0.5);
+        whole = value > 2e9 ? 2000000000 : value < -2e9 ? -2000000000 : (int)value;
+        memcpy(place, &whole, sizeof whole);
+        break;
+    case IMK_DESIGN_CHOICE:
+        if (word) {
+            whole = (int)(design_uniform(random) * choices_in(field->choices));
+            memcpy(place, &whole, sizeof whole);
+        }
+        break;
+    case IMK_DESIGN_SWITCH:
+        if (word) {
+            yes = design_uniform(random) < 0.5;
+            memcpy(place, &yes, sizeof yes);
+        }
+        break;
+    }
+}
+
+/* Design `number` of a kind of move. */
+static inline void random_design(const imk_instrument *instrument, int move, int number,
+                                 uint64_t seed, void *design)
+{
+    design_random random = design_random_of(seed, instrument->name, move, number);
+    instrument->set_default(design);
+    if (move == MOVE_ALL) {
+        for (size_t i = 0; i < instrument->field_count; i++)
+            move_field(&instrument->fields[i], design, move, &random);
+        return;
+    }
+    for (int k = 1 + (int)(3.0 * design_uniform(&random)); k > 0; k--) {
+        const double place = design_uniform(&random) * (double)instrument->field_count;
+        move_field(&instrument->fields[(size_t)place], design, move, &random);
+    }
+}
+
+/* ---- what becomes of it ---------------------------------------------------------------------- */
+
+static inline void *design_state(const imk_instrument *instrument)
+{
+    return aligned_alloc(64, (instrument->state_size + 63) / 64 * 64);
+}
+
+/* A refusal must name the parameter and say what is expected. */
+static inline bool in_words(const imk_error *error)
+{
+    return error->field[0] != '\0' && error->expected[0] != '\0' && isfinite(error->value) &&
+           isfinite(error->limit);
+}
+
+static inline void design_wrong(design_outcome *outcome, const char *what, const char *which)
+{
+    outcome->end = DESIGN_WRONG;
+    snprintf(outcome->wrong, sizeof outcome->wrong, "%s%s%s", what, *which ? ": " : "", which);
+}
+
+static inline void input_of(const imk_instrument *instrument, double input, imk_exposure *exposure)
+{
+    *(instrument->sensor == IMK_GYRO ? &exposure->angular_rate[0] : &exposure->specific_force[0]) =
+        input;
+}
+
+/* A tenth of the range, 32 samples, a thousand internal steps each at most. */
+static inline void run_level(const imk_instrument *instrument, const void *design,
+                             const imk_triad *triad, imk_level level, void *state,
+                             design_outcome *outcome)
+{
+    double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], signals[IMK_INSTRUMENT_SIGNALS_MAX];
+    imk_physics_settings settings = imk_physics_default();
+    imk_exposure exposure = imk_exposure_default();
+    settings.level = level;
+    const double step = instrument->step_length(design, &settings);
+    if (!(step > 0.0 && isfinite(step))) {
+        design_wrong(outcome, "internal step that is not above 0", "");
+        return;
+    }
+    settings.rate = step < 1e-5 ? 1e-3 / step : 100.0;
+    const imk_status status = imk_instrument_init(instrument, design, &settings, state,
+                                                  &outcome->error);
+    if (status == IMK_ERROR_UNSUPPORTED && level == IMK_LEVEL_SLOW)
+        return; /* it has one level */
+    if (status != IMK_OK) {
+        outcome->end = DESIGN_UNFIT;
+        if (!in_words(&outcome->error))
+            design_wrong(outcome, "start refused without words", outcome->error.field);
+        return;
+    }
+    const double range = triad->range.value[0];
+    input_of(instrument, range > 0.0 ? 0.1 * range : 0.1, &exposure);
+    for (int i = 0; i < 32; i++) {
+        instrument->step(state, &exposure, outputs);
+        instrument->observe(state, signals);
+        for (size_t k = 0; k < instrument->output_count; k++)
+            if (!isfinite(outputs[k]))
+                design_wrong(outcome, "output is not finite", instrument->outputs[k].name);
+        for (size_t k = 0; k < instrument->signal_count; k++)
+            if (!isfinite(signals[k]))
+                design_wrong(outcome, "signal is not finite", instrument->signals[k].name);
+    }
+}
+
+/* Experiments as short as the bandwidth allows: five of its periods to settle and 64 samples. */
+static inline imk_laboratory short_experiments(const imk_instrument *instrument,
+                                               const void *design, const imk_triad *triad)
+{
+    imk_laboratory laboratory = imk_laboratory_default();
+    const double bandwidth = triad->bandwidth.value[0];
+    laboratory.instrument = instrument;
+    laboratory.design = design;
+    laboratory.physics.level = IMK_LEVEL_SLOW;
+    laboratory.physics.rate = bandwidth <= 0.0 ? 100.0 : fmin(8.0 * bandwidth, 2000.0);
+    laboratory.settle = bandwidth > 0.0 ? fmax(0.2, 5.0 / bandwidth) : 0.2;
+    laboratory.dwell = 64.0 / laboratory.physics.rate;
+    laboratory.points = 7;
+    laboratory.frequencies = bandwidth > 0.0 ? 6 : 0;
+    laboratory.record = 0.0;
+    return laboratory;
+}
+
+/* Internal steps of all its points. */
+static inline double sweep_steps(const imk_laboratory *laboratory)
+{
+    enum { POINTS = 90 };
+    const imk_physics_settings *physics = &laboratory->physics;
+    const double step = laboratory->instrument->step_length(laboratory->design, physics);
+    const double samples = 32.0 + (laboratory->settle + laboratory->dwell) * physics->rate;
+    return POINTS * samples * fmax(1.0, 1.0 / (physics->rate * step));
+}
+
+static inline void compare(const imk_model *reduced, const imk_laboratory_result *result,
+                           int sensor, design_outcome *outcome)
+{
+    imk_laboratory_figure computed[IMK_LABORATORY_FIGURES_MAX], found[IMK_LABORATORY_FIGURES_MAX];
+    outcome->figures = imk_laboratory_figures(reduced, sensor, computed);
+    (void)imk_laboratory_figures(&result->model, sensor, found);
+    outcome->full_scale = result->full_scale;
+    outcome->scatter = result->zero_scatter;
+    for (size_t i = 0; i < outcome->figures; i++) {
+        outcome->computed[i] = computed[i].value;
+        outcome->found[i] = found[i].value;
+        outcome->sigma[i] = hypot(computed[i].sigma, found[i].sigma);
+        if (!isfinite(found[i].value) || !isfinite(found[i].sigma))
+            design_wrong(outcome, "figure of the sweep is not finite", found[i].key);
+    }
+}
+
+static inline void sweep_design(const imk_instrument *instrument, const void *design,
+                                const imk_model *reduced, double steps_allowed, void *state,
+                                design_outcome *outcome)
+{
+    const imk_triad *triad = imk_model_triad(reduced, instrument->sensor);
+    imk_laboratory laboratory = short_experiments(instrument, design, triad);
+    imk_error *error = &outcome->error;
+    if (imk_instrument_init(instrument, design, &laboratory.physics, state, error) ==
+        IMK_ERROR_UNSUPPORTED)
+        laboratory.physics.level = IMK_LEVEL_FULL;
+    outcome->sweep_steps = sweep_steps(&laboratory);
+    if (outcome->sweep_steps > steps_allowed)
+        return;
+    const size_t size = imk_laboratory_workspace_size(&laboratory);
+    imk_laboratory_result *result = malloc(sizeof *result);
+    void *workspace = malloc(size);
+    if (!result || !workspace)
+        abort();
+    if (imk_laboratory_run(&laboratory, NULL, result, workspace, size, error) == IMK_OK) {
+        outcome->end = DESIGN_SWEPT;
+        compare(reduced, result, instrument->sensor, outcome);
+    } else {
+        outcome->end = DESIGN_UNFIT;
+        if (!in_words(error))
+            design_wrong(outcome, "sweep refused without words", error->field);
+    }
+    free(workspace);
+    free(result);
+}
+
+/* @param steps_allowed  a sweep of more internal steps is left out; 0: none */
+static inline void try_design(const imk_instrument *instrument, const void *design,
+                              double steps_allowed, design_outcome *outcome)
+{
+    imk_model *model = malloc(sizeof *model);
+    void *state = design_state(instrument);
+    if (!model || !state)
+        abort();
+    memset(outcome, 0, sizeof *outcome);
+    if (imk_design_check(instrument, design, &outcome->error) != IMK_OK) {
+        outcome->end = DESIGN_REFUSED;
+        if (!in_words(&outcome->error))
+            design_wrong(outcome, "refused without words", outcome->error.field);
+    } else {
+        outcome->end = DESIGN_RAN;
+        imk_instrument_reduce(instrument, design, model);
+        const imk_triad *triad = imk_model_triad(model, instrument->sensor);
+        if (imk_model_validate(model, &outcome->error) != IMK_OK)
+            design_wrong(outcome, "error model", outcome->error.field);
+        for (int level = IMK_LEVEL_FULL; level <= IMK_LEVEL_SLOW; level++)
+            if (outcome->end == DESIGN_RAN)
+                run_level(instrument, design, triad, (imk_level)level, state, outcome);
+        if (outcome->end == DESIGN_RAN && steps_allowed > 0.0)
+            sweep_design(instrument, design, model, steps_allowed, state, outcome);
+    }
+    free(state);
+    free(model);
+}
+
+/* ---- how far a closed form is off ------------------------------------------------------------ */
+
+/* The input at which a figure acts, to the power at which it does: its value times this is an error
+ * of the reading [rad/s or m/s^2]. 0: the figure is none of the reading. */
+static inline double acts_at(const char *key, double full_scale)
+{
+    static const struct {
+        const char *begin;
+        int powers;   /* of full scale */
+        double times; /* 1 g, 1 g^2, 20 K, 0.01 K/s */
+    } terms[] = {{"bias.fixed", 0, 1.0},
+                 {"bias.temperature_rate", 0, 0.01},
+                 {"bias.temperature", 0, 20.0},
+                 {"scale_factor.temperature", 1, 20.0},
+                 {"scale_factor", 1, 1.0},
+                 {"asymmetry", 1, 0.5},
+                 {"nonlinearity.k2", 2, 1.0},
+                 {"nonlinearity.koq", 2, 1.0},
+                 {"nonlinearity.k3", 3, 1.0},
+                 {"nonlinearity.asymmetry", 1, 0.5},
+                 {"misalignment", 1, 1.0},
+                 {"g_sensitivity", 0, 9.80665},
+                 {"g2_sensitivity", 0, 96.17},
+                 {"cross_products", 0, 96.17}};
+    for (size_t i = 0; i < sizeof terms / sizeof *terms; i++)
+        if (strncmp(key, terms[i].begin, strlen(terms[i].begin)) == 0)
+            return terms[i].times * pow(full_scale, terms[i].powers);
+    return 0.0;
+}
+
+/* Is a figure of a design that was swept beyond four sigmas, by a tenth of itself or more, and by
+ * more than the readings show by themselves or than counts, a ten-thousandth of full scale? */
+static inline bool figure_differs(const design_outcome *o, size_t i, const char *key)
+{
+    const double difference = fabs(o->found[i] - o->computed[i]);
+    const double acts = acts_at(key, o->full_scale);
+    if (acts <= 0.0 || difference <= 4.0 * o->sigma[i] ||
+        difference <= 0.1 * fabs(o->computed[i]))
+        return false;
+    return difference * acts > 4.0 * o->scatter && difference * acts > 1e-4 * o->full_scale;
+}
+
+#endif
