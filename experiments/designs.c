@@ -27,7 +27,7 @@ typedef struct reason {
 } reason;
 
 typedef struct summary {
-    int ends[DESIGN_ENDS], differs, slow;
+    int ends[DESIGN_ENDS], attempts[DESIGN_ATTEMPTS], differs, slow;
     double slowest;
     int slowest_number;
     reason reasons[REASONS_MAX];
@@ -79,19 +79,21 @@ static void try_apart(const imk_instrument *instrument, const void *design, desi
 static void add_figures(summary *s, const imk_laboratory_figure *figure, int number,
                         const design_outcome *o)
 {
-    bool any = false;
+    if (!o->differs) {
+        s->attempts[o->attempt]++;
+        return;
+    }
+    s->differs++;
     for (size_t i = 0; i < o->figures; i++) {
         if (!figure_differs(o, i, figure[i].key))
             continue;
         const double z = fabs(o->found[i] - o->computed[i]) / o->sigma[i];
-        any = true;
         s->differing[i]++;
         if (z > s->worst[i] || s->differing[i] == 1) {
             s->worst[i] = z;
             s->worst_number[i] = number;
         }
     }
-    s->differs += any;
 }
 
 static double seconds_now(void)
@@ -137,6 +139,9 @@ static void show(const summary *s, const imk_laboratory_figure *figure, size_t f
     for (int i = 0; i < s->reason_count; i++)
         printf("  %4d  %s (number %d)\n", s->reasons[i].count, s->reasons[i].text,
                s->reasons[i].first);
+    for (int i = 0; i < DESIGN_ATTEMPTS; i++)
+        if (s->attempts[i] > 0)
+            printf("  %4d  %s\n", s->attempts[i], design_attempts[i].reason);
     for (size_t i = 0; i < figures; i++)
         if (s->differing[i] > 0)
             printf("  %4d  differs: %s, up to %.3g sigma (number %d)\n", s->differing[i],
