@@ -28,8 +28,7 @@ typedef struct reason {
 } reason;
 
 typedef struct summary {
-    int ends[DESIGN_ENDS], attempts[DESIGN_ATTEMPTS], sayings[SAYINGS], unmeasured, differs,
-        slow;
+    int ends[DESIGN_ENDS], attempts[DESIGN_ATTEMPTS], sayings[SAYINGS], unmeasured, differs, slow;
     char list[LISTED * 12];
     double slowest;
     int slowest_number;
@@ -178,8 +177,7 @@ static bool try_designs(const imk_instrument *instrument, int move, int designs,
     printf("%s, %s: ", instrument->name, move_names[move]);
     const int enough = (int)(ACCEPTED * designs);
     int number = 0;
-    for (; number < designs ||
-           (number < 4 * designs && number - s->ends[DESIGN_REFUSED] < enough);
+    for (; number < designs || (number < 4 * designs && number - s->ends[DESIGN_REFUSED] < enough);
          number++) {
         design_outcome outcome;
         random_design(instrument, move, number, seed, design);

@@ -54,7 +54,8 @@ static const design_attempt design_attempts[DESIGN_ATTEMPTS] = {
     {0.01, 1.0, true, "agrees at a hundredth of the inputs: higher orders, or a stop"},
     {0.01, 100.0, true, "agrees at a hundredth of the inputs, a hundred times the time"},
     {1e-3, 1.0, true, "agrees at a thousandth of the inputs: higher orders, or a stop"},
-    {0.01, 0.1, false, "agrees at a hundredth of the inputs in a tenth of the time: it drifts away"},
+    {0.01, 0.1, false,
+     "agrees at a hundredth of the inputs in a tenth of the time: it drifts away"},
     {1e-4, 1.0, false, "agrees at a ten-thousandth of the inputs without noise"}};
 
 /* What the model says itself, where no attempt agrees. */
@@ -95,8 +96,8 @@ static inline bool is_temperature(const imk_design_field *field)
     return strcmp(field->unit, "degC") == 0 || strcmp(field->unit, "K") == 0;
 }
 
-/* FEW: by up to three decades; ALL: by up to `part`, drawn again if that is beyond the range. A number
- * that is 0 has no size of its own: FEW makes it a part of its range, from a billionth to a
+/* FEW: by up to three decades; ALL: by up to `part`, drawn again if that is beyond the range. A
+ * number that is 0 has no size of its own: FEW makes it a part of its range, from a billionth to a
  * thousandth. Signs are turned where the range has both. */
 static inline double number_beside(const imk_design_field *field, double usual, int move,
                                    double part, design_random *random)
@@ -107,8 +108,8 @@ static inline double number_beside(const imk_design_field *field, double usual, 
         return usual + (move == MOVE_FEW ? 100.0 : 20.0) * u;
     if (move == MOVE_ALL)
         return usual * (1.0 + part * u) * (turns && design_uniform(random) < 0.25 ? -1.0 : 1.0);
-    const double size = usual != 0.0 ? usual * pow(10.0, 3.0 * u)
-                                     : field->maximum * pow(10.0, -6.0 + 3.0 * u);
+    const double size =
+        usual != 0.0 ? usual * pow(10.0, 3.0 * u) : field->maximum * pow(10.0, -6.0 + 3.0 * u);
     return turns ? -size : size;
 }
 
@@ -195,20 +196,13 @@ static inline double acts_at(const char *key, double full_scale)
         const char *begin;
         int powers;   /* of full scale */
         double times; /* 1 g, 1 g^2, 20 K, 0.01 K/s */
-    } terms[] = {{"bias.fixed", 0, 1.0},
-                 {"bias.temperature_rate", 0, 0.01},
-                 {"bias.temperature", 0, 20.0},
-                 {"scale_factor.temperature", 1, 20.0},
-                 {"scale_factor", 1, 1.0},
-                 {"asymmetry", 1, 0.5},
-                 {"nonlinearity.k2", 2, 1.0},
-                 {"nonlinearity.koq", 2, 1.0},
-                 {"nonlinearity.k3", 3, 1.0},
-                 {"nonlinearity.asymmetry", 1, 0.5},
-                 {"misalignment", 1, 1.0},
-                 {"g_sensitivity", 0, 9.80665},
-                 {"g2_sensitivity", 0, 96.17},
-                 {"cross_products", 0, 96.17}};
+    } terms[] = {{"bias.fixed", 0, 1.0},        {"bias.temperature_rate", 0, 0.01},
+                 {"bias.temperature", 0, 20.0}, {"scale_factor.temperature", 1, 20.0},
+                 {"scale_factor", 1, 1.0},      {"asymmetry", 1, 0.5},
+                 {"nonlinearity.k2", 2, 1.0},   {"nonlinearity.koq", 2, 1.0},
+                 {"nonlinearity.k3", 3, 1.0},   {"nonlinearity.asymmetry", 1, 0.5},
+                 {"misalignment", 1, 1.0},      {"g_sensitivity", 0, 9.80665},
+                 {"g2_sensitivity", 0, 96.17},  {"cross_products", 0, 96.17}};
     for (size_t i = 0; i < sizeof terms / sizeof *terms; i++)
         if (strncmp(key, terms[i].begin, strlen(terms[i].begin)) == 0)
             return terms[i].times * pow(full_scale, terms[i].powers);
@@ -221,8 +215,7 @@ static inline bool figure_differs(const design_outcome *o, size_t i, const char 
 {
     const double difference = fabs(o->found[i] - o->computed[i]);
     const double acts = acts_at(key, o->full_scale);
-    if (acts <= 0.0 || difference <= 4.0 * o->sigma[i] ||
-        difference <= 0.1 * fabs(o->computed[i]))
+    if (acts <= 0.0 || difference <= 4.0 * o->sigma[i] || difference <= 0.1 * fabs(o->computed[i]))
         return false;
     return difference * acts > 4.0 * (o->scatter + o->step) &&
            difference * acts > 1e-4 * o->full_scale;
@@ -269,8 +262,8 @@ static inline void run_level(const imk_instrument *instrument, const void *desig
         return;
     }
     settings.rate = step < 1e-5 ? 1e-3 / step : 100.0;
-    const imk_status status = imk_instrument_init(instrument, design, &settings, state,
-                                                  &outcome->error);
+    const imk_status status =
+        imk_instrument_init(instrument, design, &settings, state, &outcome->error);
     if (status == IMK_ERROR_UNSUPPORTED && level == IMK_LEVEL_SLOW)
         return; /* it has one level */
     if (status != IMK_OK) {
@@ -294,8 +287,8 @@ static inline void run_level(const imk_instrument *instrument, const void *desig
 }
 
 /* Experiments as short as the bandwidth allows: five of its periods to settle and 64 samples. */
-static inline imk_laboratory short_experiments(const imk_instrument *instrument,
-                                               const void *design, const imk_triad *triad,
+static inline imk_laboratory short_experiments(const imk_instrument *instrument, const void *design,
+                                               const imk_triad *triad,
                                                const design_attempt *attempt)
 {
     imk_laboratory laboratory = imk_laboratory_default();

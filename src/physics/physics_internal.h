@@ -143,7 +143,7 @@ static inline void imki_temperature_range(imk_temperature_polynomial *polynomial
 }
 
 /* A design whose bias is beyond the range of its reading, which would stay at its end without any
- * input, is refused: its `field`, a range in the unit of the reading. */
+ * input, is refused: its `field`, a range in the unit of the reading. A range of 0 has no end. */
 imk_status imki_check_bias(const imk_instrument *instrument, const void *design, const char *field,
                            imk_error *error);
 

@@ -26,7 +26,7 @@ imk_status imki_check_bias(const imk_instrument *instrument, const void *design,
     imk_triad triad = {.axis_count = 1, .direction = {{1.0, 0.0, 0.0}}};
     instrument->reduce(design, &triad);
     const double bias = triad.bias.fixed.value[0], range = triad.range.value[0];
-    if (fabs(bias) < range)
+    if (range <= 0.0 || fabs(bias) < range) /* 0: no end */
         return IMK_OK;
     return imki_conflict(error, field, range, fabs(bias),
                          "a range above the bias of this design: its reading would stay at the end "
