@@ -117,10 +117,13 @@ IMK_API double imk_tuned_gyro_vibration_drift(const imk_tuned_gyro *design);
  *      misalignment  offset_y to z
  *      g             -m d_axial/H along x, m d_quadrature/H along y
  *      g^2           m^2 (C_axial - C_radial)/H for f_z f_x
- *      N             torque noise/H;  bandwidth, damping of the loop;  range limit/H
+ *      N             torque noise/H;  range limit/H
+ *      bandwidth, damping of x to x by the loop, with the residual spring K, which turns the tilt
+ *                    by K/H while the loop pulls
  *
- *  Not in the error model: the drift by vibration at 2N, and the noise of the pickoffs, which is
- *  the derivative of a bounded angle. */
+ *  Not in the error model: the drift by vibration at 2N; the noise of the pickoffs, which is the
+ *  derivative of a bounded angle; and, of a rotor that no loop holds, the drift -K/H times its
+ *  tilt. */
 IMK_API void imk_tuned_gyro_reduce(const imk_tuned_gyro *design, imk_model *model);
 
 /** The instrument; name "tuned_gyro". */

@@ -144,6 +144,11 @@ static inline void imki_temperature_range(imk_temperature_polynomial *polynomial
     polynomial->maximum = reference + 60.0;
 }
 
+/* A design whose bias is beyond the range of its reading, which would stay at its end without any
+ * input, is refused: its `field`, a range in the unit of the reading. A range of 0 has no end. */
+imk_status imki_check_bias(const imk_instrument *instrument, const void *design, const char *field,
+                           imk_error *error);
+
 /* A damping as a model can have it: beyond 50 the slower of the two roots is all that is left, a
  * first-order filter (0); below 0.05 the nearest. */
 static inline double imki_model_damping(double damping)

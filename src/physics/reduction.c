@@ -20,6 +20,19 @@ void imk_instrument_reduce(const imk_instrument *instrument, const void *design,
     instrument->reduce(design, triad);
 }
 
+imk_status imki_check_bias(const imk_instrument *instrument, const void *design, const char *field,
+                           imk_error *error)
+{
+    imk_triad triad = {.axis_count = 1, .direction = {{1.0, 0.0, 0.0}}};
+    instrument->reduce(design, &triad);
+    const double bias = triad.bias.fixed.value[0], range = triad.range.value[0];
+    if (range <= 0.0 || fabs(bias) < range) /* 0: no end */
+        return IMK_OK;
+    return imki_conflict(error, field, range, fabs(bias),
+                         "a range above the bias of this design: its reading would stay at the end "
+                         "of the range without any input");
+}
+
 double imki_reduction_offset(imk_triad *triad, double u, double per_kelvin)
 {
     double *const s = &triad->scale_factor.fixed.value[0];

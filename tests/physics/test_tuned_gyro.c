@@ -350,6 +350,25 @@ static void test_bandwidth(void **state)
     free(model);
 }
 
+/* A rotor that is not tuned is turned by its residual spring while the loop pulls. Where K/H =
+ * 252 rad/s is above 2 z w0 = 126 rad/s, the slow root is about -w0^2 2 z w0/((2 z w0)^2 + (K/H)^2)
+ * = -1 rad/s; 28 Hz fall to 0.6 Hz. */
+static void test_bandwidth_of_a_rotor_out_of_tune(void **state)
+{
+    (void)state;
+    imk_tuned_gyro d = imk_tuned_gyro_default();
+    imk_model *model = malloc(sizeof *model);
+    imk_tuned_gyro_reduce(&d, model);
+    const double tuned = model->gyro.bandwidth.value[0];
+    d.stiffness_x *= 100.0;
+    imk_tuned_gyro_reduce(&d, model);
+    const double f = model->gyro.bandwidth.value[0];
+    const imk_physics_settings settings = quiet(200.0 * f, IMK_LEVEL_FULL);
+    CHECK_BELOW(f, 0.03 * tuned);
+    CHECK_RELATIVE(sine_gain(gyro, &d, &settings, 1e-3, f, 20000, 6, NULL), sqrt(0.5), 0.02);
+    free(model);
+}
+
 static void test_saturation(void **state)
 {
     (void)state;
@@ -456,6 +475,7 @@ int main(void)
         cmocka_unit_test(test_scale_bias_force),
         cmocka_unit_test(test_steady_state),
         cmocka_unit_test(test_bandwidth),
+        cmocka_unit_test(test_bandwidth_of_a_rotor_out_of_tune),
         cmocka_unit_test(test_saturation),
         cmocka_unit_test(test_chain),
         cmocka_unit_test(test_copies_and_grade),

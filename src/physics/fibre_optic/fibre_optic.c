@@ -194,6 +194,8 @@ static imk_status check(const void *given, imk_error *error)
         status = check_converter(design, error);
     if (status == IMK_OK)
         status = check_loop(design, error);
+    if (status == IMK_OK)
+        status = imki_check_bias(&imk_fibre_optic_instrument, design, "loop.range", error);
     return status;
 }
 

@@ -272,6 +272,8 @@ static imk_status check(const void *given, imk_error *error)
         status = check_analog(d, error);
     if (status == IMK_OK && d->loop == IMK_MEMS_SIGMA_DELTA)
         status = check_sigma_delta(d, error);
+    if (status == IMK_OK)
+        status = imki_check_bias(&imk_mems_accelerometer_instrument, d, "output.range", error);
     return status;
 }
 

@@ -68,6 +68,10 @@ static imk_status check(const void *given, imk_error *error)
     if (!(softening < imki_rate_gyro_stiffness(d)))
         return imki_conflict(error, "spring.stiffness", d->stiffness, softening,
                              "a spring that holds against the anisoinertia");
+    const double torque = fabs(d->torque.fixed), largest = imki_rate_gyro_stiffness(d) * d->stop;
+    if (!(torque < largest))
+        return imki_conflict(error, "torque.fixed", torque, largest,
+                             "a torque that the spring balances before the stop");
     return IMK_OK;
 }
 

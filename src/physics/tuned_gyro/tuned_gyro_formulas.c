@@ -99,17 +99,35 @@ double imk_tuned_gyro_vibration_drift(const imk_tuned_gyro *d)
 
 /* ---- error model ----------------------------------------------------------------------------- */
 
-/* |G|^2 of G = L/(1 + L), L = F (2 z w s + w^2)/s^2, F the Butterworth filter. */
+typedef struct complex_number {
+    double re, im;
+} complex_number;
+
+/* G = F C/(s - i q + F C), C = (2 z w0 s + w0^2)/s, of the reading x - i y of a rotor whose
+ * residual spring turns its tilt by q = K/H; F the Butterworth filter. */
+static complex_number loop_gain(const imk_tuned_gyro *d, double w, double q)
+{
+    const double w0 = 2.0 * IMKI_PI * d->loop_frequency, wf = 2.0 * IMKI_PI * d->loop_filter;
+    /* G = wf^2 (2 z w0 s + w0^2)/[s (s - i q) (s^2 + sqrt2 wf s + wf^2) + wf^2 (2 z w0 s + w0^2)]
+     */
+    const double re = wf * wf * w0 * w0, im = wf * wf * 2.0 * d->loop_damping * w0 * w;
+    const double turned = w * (w - q);
+    const double below_re = re - turned * (wf * wf - w * w);
+    const double below_im = im - turned * sqrt(2.0) * wf * w;
+    const double square = below_re * below_re + below_im * below_im;
+    return (complex_number){(re * below_re + im * below_im) / square,
+                            (im * below_re - re * below_im) / square};
+}
+
+/* Of the response of x to x: the mean of both senses of turning. */
 static double loop_power(const void *design, double w)
 {
     const imk_tuned_gyro *d = design;
-    const double w0 = 2.0 * IMKI_PI * d->loop_frequency, wf = 2.0 * IMKI_PI * d->loop_filter;
-    /* G = wf^2 (2 z w0 s + w0^2)/[s^2 (s^2 + sqrt2 wf s + wf^2) + wf^2 (2 z w0 s + w0^2)] */
-    const double real = wf * wf * w0 * w0, imaginary = wf * wf * 2.0 * d->loop_damping * w0 * w;
-    const double below_real = real - w * w * (wf * wf - w * w);
-    const double below_imaginary = imaginary - w * w * sqrt(2.0) * wf * w;
-    return (real * real + imaginary * imaginary) /
-           (below_real * below_real + below_imaginary * below_imaginary);
+    const double q =
+        imk_tuned_gyro_residual_spring(d) / imk_tuned_gyro_momentum(d, imk_tuned_gyro_speed(d));
+    const complex_number g = loop_gain(d, w, q), h = loop_gain(d, w, -q);
+    const double re = 0.5 * (g.re + h.re), im = 0.5 * (g.im + h.im);
+    return re * re + im * im;
 }
 
 double imki_tuned_gyro_bandwidth(const imk_tuned_gyro *d)

@@ -187,6 +187,8 @@ static imk_status check(const void *given, imk_error *error)
     const double temperatures[] = {IMKI_DESIGN_TEMPERATURE, IMKI_FORK_COLDEST, IMKI_FORK_HOTTEST};
     for (int i = 0; status == IMK_OK && i < 3; i++)
         status = check_temperature(design, temperatures[i], error);
+    if (status == IMK_OK)
+        status = imki_check_bias(&imk_tuning_fork_instrument, design, "output.range", error);
     return status;
 }
 
