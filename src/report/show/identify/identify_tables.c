@@ -24,23 +24,34 @@ static void estimate_rows(imk_table *table, const char *name, imk_unit unit,
                       estimates[k] ? imki_interval(estimates[k], unit.scale).text : "");
 }
 
+/* What logs at several rates have told of a channel. */
+static const imk_reading_parts *parts_of(const imk_identify_log *log, size_t channel)
+{
+    return log->readings && log->readings[channel].kind != IMK_READING_UNTOLD
+               ? &log->readings[channel]
+               : NULL;
+}
+
 /* What was counted, and what was white noise of the integral. */
 static void reading_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
                          size_t members)
 {
     const imk_log_column *column = imk_even_record_column(&log->record, member[0]);
     const imk_estimate *rows[2][IMK_LOG_COLUMNS_MAX] = {{NULL}};
-    bool any[2] = {false, false};
+    bool any[2] = {false, false}, alone = false;
     for (size_t k = 0; k < members; k++) {
         const imk_identification *r = &log->result[member[k]];
         const imk_estimate *e = &r->term[IMK_NOISE_QUANTIZATION];
         const bool white = e->present && !imk_identification_counted(r);
+        if (parts_of(log, member[k]))
+            continue;
+        alone = true;
         rows[white][k] = e;
         any[white] = any[white] || e->present;
     }
     const imk_term_display display[2] = {imk_channel_term(column, IMK_NOISE_QUANTIZATION),
                                          imk_channel_angle_white(column, log->record.dt)};
-    for (int white = 0; white < 2; white++) {
+    for (int white = 0; white < 2 && alone; white++) {
         if (white ? !any[1] : any[1] && !any[0])
             continue;
         for (size_t k = 0; k < members && !any[!white]; k++)
@@ -48,6 +59,26 @@ static void reading_rows(imk_table *table, const imk_identify_log *log, const si
         estimate_rows(table, display[white].name, display[white].unit, rows[white], members,
                       log->settings.confidence);
     }
+}
+
+/* What logs at several rates have parted. */
+static void parted_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
+                        size_t members)
+{
+    const imk_log_column *column = imk_even_record_column(&log->record, member[0]);
+    const imk_term_display display[2] = {imk_channel_reading_noise(column),
+                                         imk_channel_angle_white(column, 1)};
+    const imk_estimate *rows[2][IMK_LOG_COLUMNS_MAX] = {{NULL}};
+    bool any = false;
+    for (size_t k = 0; k < members; k++) {
+        const imk_reading_parts *parts = parts_of(log, member[k]);
+        rows[0][k] = parts ? &parts->reading_noise : NULL;
+        rows[1][k] = parts ? &parts->angle_white : NULL;
+        any = any || parts;
+    }
+    for (int white = 0; white < 2 && any; white++)
+        estimate_rows(table, display[white].name, display[white].unit, rows[white], members,
+                      log->settings.confidence);
 }
 
 static void term_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
@@ -58,6 +89,7 @@ static void term_rows(imk_table *table, const imk_identify_log *log, const size_
     const imk_estimate *estimates[IMK_LOG_COLUMNS_MAX], *times[IMK_LOG_COLUMNS_MAX];
     const double confidence = log->settings.confidence;
     reading_rows(table, log, member, members);
+    parted_rows(table, log, member, members);
     for (int term = IMK_NOISE_WHITE; term < IMK_NOISE_TERMS; term++) {
         const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
         for (size_t k = 0; k < members; k++)

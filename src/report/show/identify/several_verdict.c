@@ -79,6 +79,45 @@ static void assess_runs(imk_verdict *v, const imk_identify_several *s, const cha
     }
 }
 
+/* ---- rates ----------------------------------------------------------------------------------- */
+
+/* The channels of which a kind is told, as far as it explains the readings. */
+static void tell_kind(imk_verdict *v, const imk_identify_several *s, imk_reading_kind kind,
+                      double alarm)
+{
+    static const char *const codes[] = {"readings_untold", "readings_alike", "readings_white",
+                                        "readings_both"};
+    static const char *const texts[] = {
+        ": the logs cannot tell reading noise, the same at each rate, from white noise of the "
+        "integral: rates farther apart, or longer logs at the highest and the lowest, tell.",
+        ": reading noise, the same at each rate.",
+        ": white noise of the integral, whose readings scatter less at a lower rate.",
+        ": both reading noise, the same at each rate, and white noise of the integral."};
+    imki_text list = {.bytes = NULL};
+    for (size_t c = 0; c < s->joint.record.count; c++) {
+        const imk_reading_parts *parts = &s->readings[c];
+        if (parts->count > 0 && parts->kind == kind && parts->probability >= alarm)
+            imki_text_add(&list, "%s%s", list.size > 0 ? ", " : "", column_of(s, c)->name);
+    }
+    imki_verdict_list(v, IMK_FINDING_NOTE, codes[kind], "", &list, texts[kind]);
+}
+
+/* By chance fewer than one comparison of all channels in a hundred finds a misfit. */
+static void assess_rates(imk_verdict *v, const imk_identify_several *s)
+{
+    const double alarm = 0.01 / (double)s->joint.record.count;
+    for (size_t c = 0; c < s->joint.record.count; c++)
+        if (s->readings[c].count > 0 && s->readings[c].probability < alarm)
+            imki_verdict_add(v, IMK_FINDING_WARNING, "readings_differ",
+                             "%s: neither reading noise nor white noise of the integral nor both "
+                             "explain the readings at these rates (chance %s): a filter that "
+                             "changes with the rate, or different settings; identify the logs "
+                             "separately.",
+                             column_of(s, c)->name, imki_chance(s->readings[c].probability).text);
+    for (int kind = IMK_READING_UNTOLD; kind <= IMK_READING_BOTH; kind++)
+        tell_kind(v, s, (imk_reading_kind)kind, alarm);
+}
+
 /* ---- devices --------------------------------------------------------------------------------- */
 
 static imki_words strength_words(const imk_device_strength *s, double scale)
@@ -158,7 +197,9 @@ imk_verdict imk_several_verdict(const imk_identify_several *s, const char *const
                                 imk_result *result)
 {
     imk_verdict v = {.result = result};
-    if (s->runs)
+    if (s->rates)
+        assess_rates(&v, s);
+    else if (s->runs)
         assess_runs(&v, s, labels);
     else
         assess_devices(&v, s, labels);
