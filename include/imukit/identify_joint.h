@@ -95,7 +95,7 @@ typedef struct imk_reading_parts {
     imk_reading_kind kind;
     imk_estimate reading_noise, angle_white; /**< [unit s], [unit s/sqrt(Hz)]; neither is present
                                                 where the kind is not told */
-    double chi_square;  /**< of the readings about what explains them */
+    double chi_square;                       /**< of the readings about what explains them */
     size_t degrees;     /**< its degrees of freedom: the readings less what is present, or one */
     double probability; /**< of a chi-square this large by chance */
 } imk_reading_parts;

@@ -50,8 +50,10 @@ typedef struct imk_identify_several {
                                           all channels) */
     imk_repeatability bias[IMK_LOG_COLUMNS_MAX]; /**< of the mean, from run to run */
     /** @} */
-    /** @name For runs at several rates, which have none of these
-     *  The joint estimate is that of the longest record; joint.readings are these.
+    /** @name For runs at several rates
+     *  The joint estimate is that of the longest record; joint.readings are these. There are no
+     *  agreement and no bias; differs[] says that nothing explains the readings at these rates, and
+     *  then the kind is untold.
      *  @{ */
     bool rates;
     size_t longest; /**< from 0 */

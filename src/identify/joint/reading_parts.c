@@ -103,7 +103,8 @@ static imk_estimate estimate_of(const readings *s, int part, const double *best,
     const double limit = chi_square(s, best) + z * z;
     double lower = 0, outside = best[part], curvature;
     (void)other_of(s, !part, 0, &curvature);
-    while (outside = 2 * outside + z / sqrt(curvature), profile(s, part, outside) < limit);
+    while (outside = 2 * outside + z / sqrt(curvature), profile(s, part, outside) < limit)
+        ;
     double upper = crossing(s, part, best[part], outside, limit);
     if (profile(s, part, 0) > limit)
         lower = crossing(s, part, best[part], 0, limit);
@@ -175,9 +176,8 @@ imk_status imk_reading_parts_estimate(size_t count, const double *dt, const doub
         parts->chi_square = least;
     parts->degrees = count - (both ? 2 : 1);
     parts->probability =
-        parts->degrees > 0
-            ? imk_gamma_upper(0.5 * (double)parts->degrees, 0.5 * parts->chi_square)
-            : 1;
+        parts->degrees > 0 ? imk_gamma_upper(0.5 * (double)parts->degrees, 0.5 * parts->chi_square)
+                           : 1;
     return IMK_OK;
 }
 

@@ -73,6 +73,10 @@ static imk_status take_longest(imk_identify_several *s)
     return IMK_OK;
 }
 
+/* By chance fewer than one comparison of all channels in a hundred finds that nothing explains the
+ * readings. */
+static const double alarm = 0.01;
+
 imk_status imki_compare_rates(imk_identify_several *s, size_t other, imk_error *error)
 {
     bool any = false;
@@ -82,6 +86,10 @@ imk_status imki_compare_rates(imk_identify_several *s, size_t other, imk_error *
             return imk_error_set(error, status, imk_even_record_column(&s->joint.record, c)->name,
                                  NULL, NULL);
         any = any || s->readings[c].count > 0;
+        s->differs[c] = s->readings[c].count > 0 &&
+                        s->readings[c].probability < alarm / (double)s->joint.record.count;
+        if (s->differs[c])
+            s->readings[c].kind = IMK_READING_UNTOLD;
     }
     if (!any) {
         imk_error_set(error, IMK_ERROR_CONFLICT, "rate", NULL, NULL);

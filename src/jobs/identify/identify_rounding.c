@@ -97,8 +97,8 @@ static void round_triad(imk_triad *triad, imk_evidence *evidence, imk_quantity q
     const imk_log_column column = {.quantity = quantity};
     imk_noise *noise = &triad->noise;
     enum { TERMS = IMK_NOISE_TERMS + 2 };
-    imk_axes *axes[TERMS] = {&noise->quantization, &noise->white,       &noise->bias_instability,
-                             &noise->random_walk,  &noise->ramp,        &noise->angle_white,
+    imk_axes *axes[TERMS] = {&noise->quantization, &noise->white, &noise->bias_instability,
+                             &noise->random_walk,  &noise->ramp,  &noise->angle_white,
                              &noise->reading_noise};
     imk_term_display terms[TERMS];
     for (int term = 0; term < IMK_NOISE_TERMS; term++)

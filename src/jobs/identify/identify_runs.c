@@ -106,7 +106,8 @@ imk_status imk_identify_runs(size_t count, const imk_identify_log *const *logs, 
     imk_identify_several *s = imki_several_begin(true, count, logs, job, &own);
     imk_status status = own.status;
     size_t other = 1;
-    while (s && other < count && imk_identify_comparable(logs[0], logs[other], true, NULL) == IMK_OK)
+    while (s && other < count &&
+           imk_identify_comparable(logs[0], logs[other], true, NULL) == IMK_OK)
         other++;
     if (s && other < count)
         status = imki_compare_rates(s, other, &own);

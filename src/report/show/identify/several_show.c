@@ -315,14 +315,16 @@ static void show_joint(const imk_identify_several *s, const imk_identify_shown *
     imk_result_for(result, IMK_FOR_BOTH);
     imki_identify_tables(joint->log, result);
     if (s->rates) {
-        imk_result_line(result, "Reading noise and white noise of the integral are those of all "
-                                "logs where they tell them apart. All else is that of %.60s, the "
-                                "longest.",
+        imk_result_line(result,
+                        "Reading noise and white noise of the integral are those of all "
+                        "logs where they tell them apart. All else is that of %.60s, the "
+                        "longest.",
                         records[s->longest].label);
         imk_result_gap(result);
         imk_result_for(result, IMK_FOR_PAGE);
-        imki_identify_figure(joint, "Points: the Allan deviations of the longest log, with "
-                                    "confidence intervals. Line: its model.",
+        imki_identify_figure(joint,
+                             "Points: the Allan deviations of the longest log, with "
+                             "confidence intervals. Line: its model.",
                              result);
         return;
     }

@@ -81,9 +81,8 @@ static void assess_runs(imk_verdict *v, const imk_identify_several *s, const cha
 
 /* ---- rates ----------------------------------------------------------------------------------- */
 
-/* The channels of which a kind is told, as far as it explains the readings. */
-static void tell_kind(imk_verdict *v, const imk_identify_several *s, imk_reading_kind kind,
-                      double alarm)
+/* The channels of which a kind is told. */
+static void tell_kind(imk_verdict *v, const imk_identify_several *s, imk_reading_kind kind)
 {
     static const char *const codes[] = {"readings_untold", "readings_alike", "readings_white",
                                         "readings_both"};
@@ -96,18 +95,16 @@ static void tell_kind(imk_verdict *v, const imk_identify_several *s, imk_reading
     imki_text list = {.bytes = NULL};
     for (size_t c = 0; c < s->joint.record.count; c++) {
         const imk_reading_parts *parts = &s->readings[c];
-        if (parts->count > 0 && parts->kind == kind && parts->probability >= alarm)
+        if (parts->count > 0 && parts->kind == kind && !s->differs[c])
             imki_text_add(&list, "%s%s", list.size > 0 ? ", " : "", column_of(s, c)->name);
     }
     imki_verdict_list(v, IMK_FINDING_NOTE, codes[kind], "", &list, texts[kind]);
 }
 
-/* By chance fewer than one comparison of all channels in a hundred finds a misfit. */
 static void assess_rates(imk_verdict *v, const imk_identify_several *s)
 {
-    const double alarm = 0.01 / (double)s->joint.record.count;
     for (size_t c = 0; c < s->joint.record.count; c++)
-        if (s->readings[c].count > 0 && s->readings[c].probability < alarm)
+        if (s->differs[c])
             imki_verdict_add(v, IMK_FINDING_WARNING, "readings_differ",
                              "%s: neither reading noise nor white noise of the integral nor both "
                              "explain the readings at these rates (chance %s): a filter that "
@@ -115,7 +112,7 @@ static void assess_rates(imk_verdict *v, const imk_identify_several *s)
                              "separately.",
                              column_of(s, c)->name, imki_chance(s->readings[c].probability).text);
     for (int kind = IMK_READING_UNTOLD; kind <= IMK_READING_BOTH; kind++)
-        tell_kind(v, s, (imk_reading_kind)kind, alarm);
+        tell_kind(v, s, (imk_reading_kind)kind);
 }
 
 /* ---- devices --------------------------------------------------------------------------------- */
