@@ -122,10 +122,7 @@ static void channel_table(const imk_identify_several *s, size_t channel,
     imk_table *table = imk_result_table(result, 0);
     imk_table_row(table, "%s", column_of(s, channel)->name);
     for (int term = 0; term < IMK_NOISE_RAMP; term++) {
-        const imk_term_display display =
-            s->runs ? imk_identified_term(column_of(s, channel), &s->joint.result[channel],
-                                          (imk_noise_term)term)
-                    : imk_channel_term(column_of(s, channel), (imk_noise_term)term);
+        const imk_term_display display = imki_several_term(s, channel, (imk_noise_term)term);
         if (s->runs ? !s->joint.result[channel].term[term].present && term != IMK_NOISE_WHITE
                     : !s->term[channel][term].compared)
             continue;
@@ -200,10 +197,7 @@ static void run_data(const imk_identify_several *s, size_t channel,
     imk_result_number(result, "probability", a->probability);
     if (imki_begin_object(result, "largest_difference", a->record >= 0 && a->term >= 0)) {
         imk_result_text(result, "log", records[a->record].label);
-        imk_result_text(result, "term",
-                        imk_identified_term(column_of(s, channel), &s->joint.result[channel],
-                                            (imk_noise_term)a->term)
-                            .key);
+        imk_result_text(result, "term", imki_several_term(s, channel, (imk_noise_term)a->term).key);
         imk_result_number(result, "sigmas", a->sigmas);
         imk_result_end(result);
     }
@@ -237,13 +231,12 @@ static void rates_data(const imk_identify_several *s, size_t channel, imk_result
 static void population_data(const imk_identify_several *s, size_t channel, imk_result *result)
 {
     const imk_log_column *column = column_of(s, channel);
-    const bool other = imk_channel_kind_of(column) == IMK_CHANNEL_OTHER;
-    const double scale = other ? imk_channel_plain_unit(column).scale : 1;
     imk_result_object(result, NULL);
     imk_result_text(result, "name", column->name);
     imk_result_object(result, "population");
     for (int term = 0; term < IMK_NOISE_RAMP; term++) {
-        const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
+        const imk_term_display display = imki_several_term(s, channel, (imk_noise_term)term);
+        const double scale = display.si_scale;
         const imk_device_term *t = &s->term[channel][term];
         const char *key = imk_result_key(result, "%s", display.key);
         if (!imki_begin_object(result, key, t->compared))

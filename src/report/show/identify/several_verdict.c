@@ -2,11 +2,33 @@
 /* The verdict on several records together: do runs agree, do devices differ? */
 #include "identify_show_internal.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static const imk_log_column *column_of(const imk_identify_several *s, size_t channel)
 {
     return imk_even_record_column(&s->joint.record, channel);
+}
+
+imk_term_display imki_several_term(const imk_identify_several *s, size_t channel,
+                                   imk_noise_term term)
+{
+    const imk_log_column *column = column_of(s, channel);
+    const double dt = s->joint.record.dt;
+    bool white = false, counted = false, alike = true;
+    if (s->runs)
+        return imk_identified_term(column, &s->joint.result[channel], term);
+    for (size_t r = 0; r < s->count && term == IMK_NOISE_QUANTIZATION; r++) {
+        const imk_identification *one = &s->log[r]->result[channel];
+        if (one->term[term].present && imk_identification_counted(one))
+            counted = true;
+        else if (one->term[term].present)
+            white = true;
+        alike = alike && fabs(s->log[r]->record.dt / dt - 1) < 1e-3;
+    }
+    return !white || counted ? imk_channel_term(column, term)
+           : alike           ? imk_channel_angle_white(column, dt)
+                             : imk_channel_reading_noise(column);
 }
 
 /* ---- runs ------------------------------------------------------------------------------------ */
@@ -24,8 +46,7 @@ static void tell_run(imk_verdict *v, const imk_identify_several *s, size_t chann
                          column->name, chance.text);
         return;
     }
-    const imk_term_display display =
-        imk_identified_term(column, &s->joint.result[channel], (imk_noise_term)a->term);
+    const imk_term_display display = imki_several_term(s, channel, (imk_noise_term)a->term);
     const double scale = display.unit.scale;
     imki_verdict_add(
         v, IMK_FINDING_WARNING, "runs_differ",
@@ -131,7 +152,7 @@ static void tell_difference(imk_verdict *v, const imk_identify_several *s, size_
                             const char *const *labels)
 {
     const imk_device_term *t = &s->term[channel][term];
-    const imk_term_display display = imk_channel_term(column_of(s, channel), (imk_noise_term)term);
+    const imk_term_display display = imki_several_term(s, channel, (imk_noise_term)term);
     imki_verdict_add(v, IMK_FINDING_NOTE, "devices_differ",
                      "%s: %s differs: %s %s in %s, %s in %s (%.1f sigmas; chance if all were alike "
                      "%s).",
