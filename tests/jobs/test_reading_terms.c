@@ -174,7 +174,7 @@ static void drop(imk_identify_several *several, imk_identify_log **log)
 static void test_rates(void **state)
 {
     (void)state;
-    static const double truths[3][2] = {{1e-4, 0, false}, {0, 1e-5}, {1e-4, 1e-5}};
+    static const double truths[3][2] = {{1e-4, 0}, {0, 1e-5}, {1e-4, 1e-5}};
     static const imk_reading_kind kinds[3] = {IMK_READING_ALIKE, IMK_READING_WHITE,
                                               IMK_READING_BOTH};
     const size_t sets = check_quick() ? 1 : 8;

@@ -727,7 +727,7 @@ static void examples_of_the_manual_are_models(void **state)
         model = parsed(begin);
         at = end + 1;
     }
-    assert_int_equal(count, 3);
+    assert_int_equal(count, 4);
     assert_int_equal(model.gyro.noise.resonance_count, 1);
     assert_int_equal(model.gyro_evidence.interval_count, 3);
     assert_int_equal(model.correlation.count, 3);
