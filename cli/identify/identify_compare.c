@@ -50,17 +50,22 @@ static void label_logs(several_logs *s, const char *const *paths, growing_list *
     }
 }
 
+/* Runs at several rates are compared for the errors of their readings alone. @return the exit code
+ */
+static int refuse_rates(const several_logs *s, size_t record)
+{
+    const imk_even_record *first = &s->log[0]->record, *other = &s->log[record]->record;
+    return command_failed("%s was sampled at %.6g Hz, %s at %.6g Hz: runs of one sensor have "
+                          "one sampling rate; identify them separately, or with --devices",
+                          s->label[0], 1 / first->dt, s->label[record], 1 / other->dt);
+}
+
 /* Why two logs cannot be compared. @return -1 or the exit code */
 static int check_channels(const several_logs *s, size_t record)
 {
     const imk_even_record *first = &s->log[0]->record, *other = &s->log[record]->record;
-    imk_error error;
-    if (imk_identify_comparable(s->log[0], s->log[record], s->options->runs, &error) == IMK_OK)
+    if (imk_identify_comparable(s->log[0], s->log[record], false, NULL) == IMK_OK)
         return -1;
-    if (strcmp(error.field, "rate") == 0)
-        return command_failed("%s was sampled at %.6g Hz, %s at %.6g Hz: runs of one sensor have "
-                              "one sampling rate; identify them separately, or with --devices",
-                              s->label[0], 1 / first->dt, s->label[record], 1 / other->dt);
     return command_failed("%s and %s do not have the same channels (%zu from %s on, %zu from %s "
                           "on): only logs with the same columns can be compared",
                           s->label[0], s->label[record], first->count,
@@ -99,6 +104,8 @@ static int compare(several_logs *s, identification *joint, const imk_executor *e
                                   : imk_identify_devices(s->count, logs, NULL, &several, &error);
     if (command_unless_memory(status) != IMK_OK) {
         imk_result_free(result);
+        if (strcmp(error.field, "rate") == 0)
+            return refuse_rates(s, (size_t)error.index);
         return command_error(&error, joint->shown.name);
     }
     joint->shown.log = &several->joint;

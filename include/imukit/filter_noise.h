@@ -81,12 +81,12 @@ enum { IMK_FILTER_STATES_MAX = IMK_TERMS_MAX + 3 };
 
 /** One axis. */
 typedef struct imk_filter_noise {
-    double white;        /**< N [unit/sqrt(Hz)], two-sided */
-    double quantization; /**< Q, with reading noise [unit s]: measurement noise of x0: 1 sigma of
-                            each reading of the integral. Readings are independent, so it does not
-                            accumulate */
-    double angle_white;  /**< A [unit s/sqrt(Hz)]: the same, but of the density A^2: the variance of
-                            readings that are means over dt is A^2/dt more */
+    double white;         /**< N [unit/sqrt(Hz)], two-sided */
+    double quantization;  /**< Q [unit s]: measurement noise of x0: 1 sigma of each reading of the
+                             integral. Readings are independent, so it does not accumulate */
+    double reading_noise; /**< the same [unit s], not of counting: the variances add up */
+    double angle_white;   /**< A [unit s/sqrt(Hz)]: the same, but of the density A^2: the variance
+                             of readings that are means over dt is A^2/dt more */
     int state_count;
     imk_filter_state state[IMK_FILTER_STATES_MAX];
     unsigned lost;     /**< IMK_FILTER_LOST_… bits */

@@ -164,8 +164,8 @@ IMK_API bool imk_identification_counted(const imk_identification *result);
 
 /** Put a channel's result into one axis of a model: its noise terms, its output filter and the
  *  evidence for them. What is not counted becomes noise.angle_white. Absent terms become zero in
- * the model, and their bounds go into the evidence. Where the output is rounded after its filter,
- * its step becomes the model's resolution.
+ *  the model, and their bounds go into the evidence. Where the output is rounded after its filter,
+ *  its step becomes the model's resolution.
  *  @param sensor  IMK_GYRO or IMK_ACCEL
  *  @param axis    0 … IMK_AXES_MAX - 1 */
 IMK_API void imk_identification_store(const imk_identification *result, imk_model *model,

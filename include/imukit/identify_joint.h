@@ -6,7 +6,8 @@
  *  record is identified with a summary of its spectrum kept (imk_identify_settings.summary); the
  *  joint estimate is maximum likelihood on all summaries together, with the selection of terms and
  *  the intervals of one record (docs/theory/several-records.md). Records of different sensors make
- *  a population: each parameter has a mean and a spread. */
+ *  a population: each parameter has a mean and a spread. Records of one sensor at several rates
+ *  part what its readings have at every rate from what they have less of at a lower one. */
 #ifndef IMUKIT_IDENTIFY_JOINT_H
 #define IMUKIT_IDENTIFY_JOINT_H
 
@@ -79,6 +80,44 @@ typedef struct imk_population {
  *  @return IMK_ERROR_TOO_SHORT (fewer than two values), IMK_ERROR_RANGE, IMK_ERROR_NOT_FINITE */
 IMK_API imk_status imk_population_estimate(size_t count, const double *values, const double *sigmas,
                                            double confidence, imk_population *population);
+
+/** What explains the errors of the readings of the integral at several rates. */
+typedef enum imk_reading_kind {
+    IMK_READING_UNTOLD = 0, /**< either of the two alone */
+    IMK_READING_ALIKE,      /**< reading noise, the same at each rate */
+    IMK_READING_WHITE,      /**< white noise of the integral */
+    IMK_READING_BOTH        /**< only both together */
+} imk_reading_kind;
+
+/** Reading noise r and white noise of the integral A, which add up to r^2 + A^2/dt. */
+typedef struct imk_reading_parts {
+    size_t count; /**< readings compared; 0: not compared */
+    imk_reading_kind kind;
+    imk_estimate reading_noise, angle_white; /**< [unit s], [unit s/sqrt(Hz)]; neither is present
+                                                where the kind is not told */
+    double chi_square;                       /**< of the readings about what explains them */
+    size_t degrees;     /**< its degrees of freedom: the readings less what is present, or one */
+    double probability; /**< of a chi-square this large by chance */
+} imk_reading_parts;
+
+/** Part the squares of readings at several rates by weighted least squares in which neither r^2 nor
+ *  A^2 is negative. One of them is left out if the others explain the readings as well; intervals
+ *  are by profile, with the other one free, and hold the value without it, too.
+ *  @param dt           sample intervals [s]
+ *  @param squares      of 1 sigma of the readings [(unit s)^2]
+ *  @param sigmas       1 sigma of each square, > 0
+ *  @param confidence   of the intervals
+ *  @param significance chance that what is absent is called present
+ *  @return IMK_ERROR_TOO_SHORT (fewer than two intervals that differ by 1e-3), IMK_ERROR_RANGE,
+ *          IMK_ERROR_NOT_FINITE */
+IMK_API imk_status imk_reading_parts_estimate(size_t count, const double *dt, const double *squares,
+                                              const double *sigmas, double confidence,
+                                              double significance, imk_reading_parts *parts);
+
+/** Put them into one axis of a model, in place of what one record alone makes of them
+ *  (imk_identification_store()), if the kind is told. */
+IMK_API void imk_reading_parts_store(const imk_reading_parts *parts, imk_model *model, int sensor,
+                                     int axis);
 
 IMK_END_C
 #endif

@@ -58,6 +58,8 @@ typedef struct imk_identify_log {
     imk_noise_map *map[IMK_LOG_COLUMNS_MAX]; /**< noise over time; NULL: of several records, or of a
                                                 curve */
     imk_noise_changes changes[IMK_LOG_COLUMNS_MAX]; /**< what these maps say */
+    /** Per channel, of several records at several rates (identify_several.h); else NULL. */
+    const imk_reading_parts *readings;
     imk_findings findings;
 } imk_identify_log;
 
@@ -110,6 +112,8 @@ IMK_API imk_term_display imk_identified_term(const imk_log_column *column,
                                              const imk_identification *result, imk_noise_term term);
 /** The names and units of white noise of the integral A, of samples dt apart; as above. */
 IMK_API imk_term_display imk_channel_angle_white(const imk_log_column *column, double dt);
+/** The names and units of reading noise. */
+IMK_API imk_term_display imk_channel_reading_noise(const imk_log_column *column);
 
 /** Where the sensor was moved, on any channel; times from the first row that was read [s]. */
 typedef struct imk_identify_moves {

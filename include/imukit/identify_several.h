@@ -50,6 +50,15 @@ typedef struct imk_identify_several {
                                           all channels) */
     imk_repeatability bias[IMK_LOG_COLUMNS_MAX]; /**< of the mean, from run to run */
     /** @} */
+    /** @name For runs at several rates
+     *  The joint estimate is that of the longest record; joint.readings are these. There are no
+     *  agreement and no bias; differs[] says that nothing explains the readings at these rates, and
+     *  then the kind is untold.
+     *  @{ */
+    bool rates;
+    size_t longest; /**< from 0 */
+    imk_reading_parts readings[IMK_LOG_COLUMNS_MAX];
+    /** @} */
     /** @name For devices
      *  @{ */
     size_t compared_count, differing_count; /**< numbers of parameters */
@@ -67,6 +76,10 @@ IMK_API imk_status imk_identify_comparable(const imk_identify_log *first,
 
 /** Runs of one sensor: a joint estimate of each channel, whether the runs agree with it, and how
  *  much the mean differs from run to run.
+ *
+ *  Runs at several rates have no joint estimate. If the readings of the integral of a channel have
+ *  errors at two rates at least, and none are counted, they are parted
+ *  (imk_reading_parts_estimate()); else the rates are refused.
  *  @param count   2 … IMK_JOINT_RECORDS_MAX
  *  @param logs    results of imk_identify_log_run(), all with the same settings and with
  *                 settings.summarise

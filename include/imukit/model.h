@@ -236,7 +236,7 @@ IMK_API imk_triad *imk_model_triad_to_set(imk_model *model, int sensor);
 
 /** 1 sigma of the error of one reading of the integral of an axis, means over dt [s] being read
  *  [unit s]: the root of Q^2 + reading_noise^2 + A^2/dt. The Allan variance of these errors is
- * three times its square over tau^2. */
+ *  three times its square over tau^2. */
 IMK_API double imk_noise_reading(const imk_noise *noise, int axis, double dt);
 
 /** A perfect unit: orthogonal triads of gyros and accelerometers without any error, and no

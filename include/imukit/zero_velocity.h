@@ -71,12 +71,12 @@ IMK_API void imk_zero_velocity_default(imk_zero_velocity_settings *settings);
 /** Fill gyro and accel from a model with three axes of each.
  *
  *  White noise, random walk and Gauss-Markov terms are taken as they are, quantization together
- * with white noise of the integral (imk_noise_reading()). Flicker (bias instability B) becomes
- * Gauss-Markov processes with correlation times of 10, 100, 1000 and 10^4 s, each of variance B^2
- * ln(10)/pi: the spectrum is accurate within 12 % from 0.1 to 10 mHz. The constant part contains
- * all errors that are constant while the unit is stationary: repeatability, the sigma of the fixed
- * bias, and the sigmas of scale factors, misalignments and g-sensitivity times the means of rate
- * and force. Known values are assumed to be taken out (imukit compensate).
+ *  with white noise of the integral (imk_noise_reading()). Flicker (bias instability B) becomes
+ *  Gauss-Markov processes with correlation times of 10, 100, 1000 and 10^4 s, each of variance B^2
+ *  ln(10)/pi: the spectrum is accurate within 12 % from 0.1 to 10 mHz. The constant part contains
+ *  all errors that are constant while the unit is stationary: repeatability, the sigma of the fixed
+ *  bias, and the sigmas of scale factors, misalignments and g-sensitivity times the means of rate
+ *  and force. Known values are assumed to be taken out (imukit compensate).
  *  @param dt          sample interval [s], > 0
  *  @param rate,force  mean readings at the start, body axes [rad/s], [m/s^2]
  *  @return IMK_ERROR_UNSUPPORTED (a triad is missing or has not three axes) */

@@ -19,4 +19,8 @@ bool imki_cross_axes(const imk_triad *triad, int axis, double p[3], double o[3])
 /* True when the model has such a number, or may have it when its sensor is present. */
 bool imki_model_parameter_fits(const imk_model *model, imk_model_parameter parameter);
 
+/* The interval of a key and instance, added when it is not there yet; NULL when the list is full.
+ */
+imk_interval *imki_evidence_interval(imk_evidence *evidence, const char *key, int instance);
+
 #endif

@@ -234,8 +234,8 @@ imk_status imk_filter_noise_of(const imk_triad *triad, int axis,
         return status;
     const imk_noise *n = &triad->noise;
     imk_filter_noise made = {.white = n->white.value[axis],
-                             .quantization =
-                                 hypot(n->quantization.value[axis], n->reading_noise.value[axis]),
+                             .quantization = n->quantization.value[axis],
+                             .reading_noise = n->reading_noise.value[axis],
                              .angle_white = n->angle_white.value[axis],
                              .lost = lost_terms(triad, axis)};
     for (int i = 0; i < n->gauss_markov_count; i++)

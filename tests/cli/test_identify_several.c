@@ -106,6 +106,40 @@ static void test_which(void **state)
         "sensor have one sampling rate; identify them separately, or with --devices\n");
 }
 
+/* Logs at two rates part reading noise; the table, the sentence, the data and the model. */
+static void test_rates(void **state)
+{
+    (void)state;
+    put("readings.yaml", "imukit: 1\nname: readings\ngyro: {noise: {reading_noise: 2 arcsec}}\n");
+    assert_int_equal(run("$I simulate readings.yaml --rate 100Hz --duration 1min --seed 1 -o "
+                         "slow.npy >&2 && $I simulate readings.yaml --rate 400Hz --duration 20s "
+                         "--seed 2 -o fast.npy >&2"),
+                     0);
+    json_t *root = identify("slow.npy fast.npy --runs -o readings2.yaml", 0);
+    const char *text;
+    assert_int_equal(messages(result_of(root, "verdict"), "readings_alike", &text), 1);
+    check_contains(text, "reading noise, the same at each rate", "rates");
+    json_t *channel = json_array_get(result_of(root, "channels"), 0);
+    json_t *term = json_object_get(json_object_get(channel, "terms"), "reading_noise");
+    CHECK_CLOSE(number(term, "value"), 2 * DEGREE / 3600, 6 * number(term, "sigma"));
+    assert_string_equal(
+        json_string_value(json_object_get(json_object_get(channel, "readings"), "kind")),
+        "reading noise");
+    json_decref(root);
+    assert_int_equal(run("cat readings2.yaml"), 0);
+    check_contains(out, "reading_noise: ", "rates");
+    assert_null(strstr(out, "    angle_white"));
+    assert_int_equal(run("$I identify slow.npy fast.npy --runs --truth readings.yaml"), 0);
+    check_contains(out, "1 sigma of a reading [arcsec]", "rates");
+    check_contains(out, "All else is that of slow.npy, the longest", "rates");
+    check_contains(out, "gyro_x   reading noise  2 ", "rates");
+    assert_int_equal(run("$I identify slow.npy fast.npy --devices"), 0);
+    check_contains(out, "reading noise [arcsec]", "sensors at two rates");
+    assert_int_equal(run("$I identify --plan readings.yaml --rate 100Hz --want 'reading_noise 1%'"),
+                     0);
+    check_contains(out, "gyro.reading_noise", "plan");
+}
+
 static void test_runs(void **state)
 {
     (void)state;
@@ -268,13 +302,10 @@ static void test_allan(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_which),
-        cmocka_unit_test(test_runs),
-        cmocka_unit_test(test_run_that_differs),
-        cmocka_unit_test(test_devices),
-        cmocka_unit_test(test_report),
-        cmocka_unit_test(test_plan),
-        cmocka_unit_test(test_allan),
+        cmocka_unit_test(test_which),   cmocka_unit_test(test_rates),
+        cmocka_unit_test(test_runs),    cmocka_unit_test(test_run_that_differs),
+        cmocka_unit_test(test_devices), cmocka_unit_test(test_report),
+        cmocka_unit_test(test_plan),    cmocka_unit_test(test_allan),
     };
     return cmocka_run_group_tests(tests, make_logs, drop_logs);
 }

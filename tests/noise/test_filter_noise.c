@@ -201,6 +201,8 @@ static void test_rest(void **state)
     imk_error error;
     model.gyro.bias.repeatability.value[0] = 1e-3;
     model.gyro.noise.quantization.value[0] = 5e-6;
+    model.gyro.noise.reading_noise.value[0] = 7e-6;
+    model.gyro.noise.angle_white.value[0] = 9e-6;
     model.gyro.noise.ramp.value[0] = 1e-9;
     model.gyro.bandwidth.value[0] = 50;
     CHECK_OK(imk_filter_noise_of(&model.gyro, 0, &settings, &noise, &error));
@@ -208,6 +210,8 @@ static void test_rest(void **state)
     assert_int_equal(noise.state[0].source, IMK_FILTER_FROM_CONSTANT);
     CHECK_CLOSE(noise.state[0].initial, 1e-3, 0);
     CHECK_CLOSE(noise.quantization, 5e-6, 0);
+    CHECK_CLOSE(noise.reading_noise, 7e-6, 0);
+    CHECK_CLOSE(noise.angle_white, 9e-6, 0);
     assert_int_equal(noise.lost, IMK_FILTER_LOST_RAMP | IMK_FILTER_LOST_LOW_PASS);
     CHECK_STATUS(imk_filter_noise_of(&model.gyro, 3, &settings, &noise, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "axis");

@@ -111,6 +111,41 @@ static double ramp(double dt, size_t n)
     return 0.1 * 0.1 * tau * tau / 2.0;
 }
 
+/* 3 r^2/tau^2 at every rate */
+static void set_reading(imk_noise *noise)
+{
+    noise->reading_noise = axes(0.02, 0.02, 0.02);
+}
+static double reading(double dt, size_t n)
+{
+    const double tau = (double)n * dt;
+    return 3.0 * 0.02 * 0.02 / (tau * tau);
+}
+
+/* 3 A^2/(dt tau^2): ten times as much at a hundred times the rate */
+static void set_angle_white(imk_noise *noise)
+{
+    noise->angle_white = axes(0.02, 0.02, 0.02);
+}
+static double angle_white(double dt, size_t n)
+{
+    const double tau = (double)n * dt;
+    return 3.0 * 0.02 * 0.02 / (dt * tau * tau);
+}
+
+/* Rounding of the integral to 0.007, which white noise moves by 0.0095 in a millisecond: N^2/tau +
+ * 3 Q^2/tau^2, of which the second is a ninth at 1000 Hz. */
+static void set_quantization(imk_noise *noise)
+{
+    noise->white = axes(0.3, 0.3, 0.3);
+    noise->quantization = axes(0.002, 0.002, 0.002);
+}
+static double quantization(double dt, size_t n)
+{
+    const double tau = (double)n * dt;
+    return 0.3 * 0.3 / tau + 3.0 * 0.002 * 0.002 / (tau * tau);
+}
+
 typedef struct term {
     const char *name;
     void (*set)(imk_noise *noise);
@@ -127,6 +162,9 @@ static const term terms[] = {
     {"resonance", set_resonance, resonance, 0.0},
     {"sinusoid", set_sinusoid, sinusoid, 1e-9},
     {"ramp", set_ramp, ramp, 1e-9},
+    {"reading_noise", set_reading, reading, 0.0},
+    {"angle_white", set_angle_white, angle_white, 0.0},
+    {"white, quantization", set_quantization, quantization, 0.0},
 };
 
 /* Allan variance of `rows` samples, stretches of n side by side. */
@@ -323,6 +361,8 @@ static void test_zero_axis(void **state)
             0.0;
         noise->ramp.value[0] = noise->gauss_markov[0].sigma.value[0] = 0.0;
         noise->resonance[0].sigma.value[0] = noise->sinusoid[0].amplitude.value[0] = 0.0;
+        noise->reading_noise.value[0] = noise->angle_white.value[0] = 0.0;
+        noise->quantization.value[0] = 0.0;
         imk_simulation simulation = imk_simulation_default();
         simulation.earth = false;
         double *log = simulate_rows(&model, &simulation, ROWS);

@@ -3,6 +3,8 @@
  */
 #include "imukit/repeatability.h"
 
+#include "model/model_internal.h"
+
 #include "imukit/elementary.h"
 
 #include <math.h>
@@ -173,27 +175,13 @@ imk_status imk_repeatability_of_calibrations(size_t runs, const imk_calibration_
 /* ---- into a model ------------------------------------------------------------------------------
  */
 
-/* The interval of a key, added when it is not there yet; NULL when the list is full. */
-static imk_interval *interval_of(imk_evidence *evidence, const char *key)
-{
-    for (int i = 0; i < evidence->interval_count; i++)
-        if (strcmp(evidence->interval[i].key, key) == 0)
-            return &evidence->interval[i];
-    if (evidence->interval_count == IMK_INTERVALS_MAX)
-        return NULL;
-    imk_interval *added = &evidence->interval[evidence->interval_count++];
-    memset(added, 0, sizeof *added);
-    strncpy(added->key, key, sizeof added->key - 1);
-    return added;
-}
-
 static void store(const imk_repeatability *from, int axes, imk_axes *to, imk_evidence *evidence,
                   const char *key)
 {
     bool any = false;
     for (int i = 0; i < axes; i++)
         any = any || from[i].runs > 0;
-    imk_interval *interval = any ? interval_of(evidence, key) : NULL;
+    imk_interval *interval = any ? imki_evidence_interval(evidence, key, 0) : NULL;
     for (int i = 0; i < axes; i++) {
         if (from[i].runs == 0)
             continue;

@@ -234,7 +234,8 @@ static void note_what_is_lost(imki_parameters *p, const char *sensor,
     bool quantized = false;
     for (int axis = 0; axis < 3; axis++) {
         worst = noise[axis].misfit > worst->misfit ? &noise[axis] : worst;
-        quantized = quantized || noise[axis].quantization > 0 || noise[axis].angle_white > 0;
+        quantized = quantized || noise[axis].quantization > 0 || noise[axis].reading_noise > 0 ||
+                    noise[axis].angle_white > 0;
     }
     if (worst->misfit > 0 && settings->flicker != IMK_FILTER_FLICKER_LEFT_OUT)
         imki_note(p, false,
@@ -244,8 +245,9 @@ static void note_what_is_lost(imki_parameters *p, const char *sensor,
                   worst->misfit_tau);
     if (quantized)
         imki_note(p, false,
-                  "%s: quantization and white noise of the integral are measurement noise of the "
-                  "integral (R of a filter), not process noise: Q does not contain them",
+                  "%s: quantization, reading noise and white noise of the integral are measurement "
+                  "noise of the integral (R of a filter), not process noise: Q does not contain "
+                  "them",
                   sensor);
 }
 
@@ -256,7 +258,7 @@ static void write_sensor(tree_writer *w, int kind)
     const char *const *unit = units[kind];
     const double dt = 1 / p->settings->rate;
     imk_filter_noise noise[3];
-    double white[3], sampled[3], angle[3], quantization[3], angle_white[3];
+    double white[3], sampled[3], angle[3], quantization[3], reading[3], angle_white[3];
     if (!triad->present)
         return;
     for (int axis = 0; axis < 3; axis++) {
@@ -269,6 +271,7 @@ static void write_sensor(tree_writer *w, int kind)
         sampled[axis] = white[axis] / sqrt(dt);
         angle[axis] = white[axis] * sqrt(dt);
         quantization[axis] = noise[axis].quantization;
+        reading[axis] = noise[axis].reading_noise;
         angle_white[axis] = noise[axis].angle_white;
     }
     note_what_is_lost(p, imki_kind_names[kind], noise, &p->settings->filter);
@@ -283,8 +286,10 @@ static void write_sensor(tree_writer *w, int kind)
                "of the integral: sigma_c sqrt(dt)");
     put_vector(w, "quantization", quantization, unit[UNIT_INTEGRAL],
                "1 sigma of each reading of the integral: measurement noise");
+    put_vector(w, "reading_noise", reading, unit[UNIT_INTEGRAL],
+               "the same, not of counting: the variances add up");
     put_vector(w, "integral_white_noise", angle_white, unit[UNIT_INTEGRAL_WHITE],
-               "sigma of a reading of the integral: this/sqrt(dt), beside quantization");
+               "sigma of a reading of the integral: this/sqrt(dt), beside them");
     put_vector(w, "initial_bias_sigma", triad->bias.repeatability.value, unit[UNIT_BIAS],
                "from run to run");
     put_key(w, "bias_states");
@@ -381,6 +386,7 @@ static void read_sensor(imki_parameters *p, int node, int kind)
                                         "white_noise_per_reading",
                                         "white_noise_per_step",
                                         "quantization",
+                                        "reading_noise",
                                         "integral_white_noise",
                                         "initial_bias_sigma",
                                         "bias_states",
@@ -393,6 +399,8 @@ static void read_sensor(imki_parameters *p, int node, int kind)
                      triad->noise.white.value);
     imki_node_accept(p, node, "quantization", kind, IMKI_PLAIN, (imki_unit){unit[UNIT_INTEGRAL], 1},
                      triad->noise.quantization.value);
+    imki_node_accept(p, node, "reading_noise", kind, IMKI_PLAIN,
+                     (imki_unit){unit[UNIT_INTEGRAL], 1}, triad->noise.reading_noise.value);
     imki_node_accept(p, node, "integral_white_noise", kind, IMKI_PLAIN,
                      (imki_unit){unit[UNIT_INTEGRAL_WHITE], 1}, triad->noise.angle_white.value);
     imki_node_accept(p, node, "initial_bias_sigma", kind, IMKI_BIAS,

@@ -7,18 +7,6 @@
 
 #include <math.h>
 
-/* A likelihood profile reaches as far above the likeliest square as the confidence has sigmas. */
-static imk_device_strength strength_of(const imk_estimate *e, double confidence)
-{
-    const double z = imk_normal_quantile(0.5 + confidence / 2);
-    const double centre = e->free_value > 0 ? e->free_value : e->value;
-    imk_device_strength s = {
-        .present = e->present, .value = e->value, .sigma = e->sigma, .bound = e->upper};
-    s.square = centre * centre;
-    s.square_sigma = e->present ? 2 * e->value * e->sigma : (e->upper * e->upper - s.square) / z;
-    return s;
-}
-
 /* The two that are farthest apart, in sigmas. */
 static void find_farthest(imk_device_term *t, size_t count)
 {
@@ -42,7 +30,7 @@ static void compare(imk_identify_several *s, size_t channel, int term)
     double square[IMK_JOINT_RECORDS_MAX], sigma[IMK_JOINT_RECORDS_MAX];
     bool any = false, all = true;
     for (size_t r = 0; r < s->count; r++) {
-        t->device[r] = strength_of(&s->log[r]->result[channel].term[term], confidence);
+        t->device[r] = imki_strength_of(&s->log[r]->result[channel].term[term], confidence);
         square[r] = t->device[r].square;
         sigma[r] = t->device[r].square_sigma;
         any = any || t->device[r].present;

@@ -28,7 +28,10 @@ static void store_kind(const imk_identify_log *log, imk_channel_kind kind, const
         /* A record of single axes keeps their directions. */
         for (int k = 0; k < 3; k++)
             triad->direction[axes][k] = k == column->axis % 3 ? 1 : 0;
-        imk_identification_store(&log->result[c], model, sensor, axes++);
+        imk_identification_store(&log->result[c], model, sensor, axes);
+        if (log->readings)
+            imk_reading_parts_store(&log->readings[c], model, sensor, axes);
+        axes++;
     }
     triad->present = axes > 0;
     if (axes == 0)
@@ -39,11 +42,11 @@ static void store_kind(const imk_identify_log *log, imk_channel_kind kind, const
     imk_utf8_clean(source, evidence->source, sizeof evidence->source);
     char length[60];
     imk_readable_duration(log->duration, length, sizeof length);
-    snprintf(evidence->method, sizeof evidence->method, "imukit %s identify: %s, %s at %.6g Hz",
+    snprintf(evidence->method, sizeof evidence->method, "imukit %s identify: %s, %s at %.6g Hz%s",
              IMK_VERSION,
              log->settings.from_allan ? "generalised least squares on Allan deviations"
                                       : "maximum likelihood on the cosine spectrum",
-             length, 1 / log->record.dt);
+             length, 1 / log->record.dt, log->readings ? "; readings at several rates" : "");
 }
 
 void imk_identify_log_model(const imk_identify_log *log, const char *source, imk_model *model)

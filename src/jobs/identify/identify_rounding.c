@@ -80,16 +80,14 @@ static void round_lists(imk_noise *noise, const char *unit)
 }
 
 /* Unit of the parameter a dotted key of the evidence names. */
-static const char *unit_of_key(const char *key, const imk_term_display *terms,
-                               const imk_term_display *white, const char *plain)
+static const char *unit_of_key(const char *key, const imk_term_display *terms, size_t count,
+                               const char *plain)
 {
     if (strncmp(key, "noise.", 6) != 0)
         return plain;
-    for (int term = 0; term < IMK_NOISE_TERMS; term++)
+    for (size_t term = 0; term < count; term++)
         if (strcmp(key + 6, terms[term].key) == 0)
             return terms[term].unit.text;
-    if (strcmp(key + 6, white->key) == 0)
-        return white->unit.text;
     return strstr(key, "time") ? "s" : plain;
 }
 
@@ -98,22 +96,24 @@ static void round_triad(imk_triad *triad, imk_evidence *evidence, imk_quantity q
 {
     const imk_log_column column = {.quantity = quantity};
     imk_noise *noise = &triad->noise;
-    imk_axes *axes[IMK_NOISE_TERMS] = {&noise->quantization, &noise->white,
-                                       &noise->bias_instability, &noise->random_walk, &noise->ramp};
-    imk_term_display terms[IMK_NOISE_TERMS];
-    for (int term = 0; term < IMK_NOISE_TERMS; term++) {
+    enum { TERMS = IMK_NOISE_TERMS + 2 };
+    imk_axes *axes[TERMS] = {&noise->quantization, &noise->white, &noise->bias_instability,
+                             &noise->random_walk,  &noise->ramp,  &noise->angle_white,
+                             &noise->reading_noise};
+    imk_term_display terms[TERMS];
+    for (int term = 0; term < IMK_NOISE_TERMS; term++)
         terms[term] = imk_channel_term(&column, (imk_noise_term)term);
+    terms[IMK_NOISE_TERMS] = imk_channel_angle_white(&column, 1);
+    terms[IMK_NOISE_TERMS + 1] = imk_channel_reading_noise(&column);
+    for (int term = 0; term < TERMS; term++)
         round_axes(axes[term], terms[term].unit.text);
-    }
-    const imk_term_display white = imk_channel_angle_white(&column, 1);
-    round_axes(&noise->angle_white, white.unit.text);
     round_lists(noise, unit);
     round_axes(&triad->bandwidth, "Hz");
     round_axes(&triad->damping, "1");
     round_axes(&triad->resolution, unit);
     for (int i = 0; i < evidence->interval_count; i++)
         round_interval(&evidence->interval[i],
-                       unit_of_key(evidence->interval[i].key, terms, &white, unit));
+                       unit_of_key(evidence->interval[i].key, terms, TERMS, unit));
 }
 
 void imki_round_model(imk_model *model)

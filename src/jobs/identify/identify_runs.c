@@ -105,7 +105,13 @@ imk_status imk_identify_runs(size_t count, const imk_identify_log *const *logs, 
     imk_error own = {.status = IMK_OK};
     imk_identify_several *s = imki_several_begin(true, count, logs, job, &own);
     imk_status status = own.status;
-    for (size_t c = 0; s && status == IMK_OK && c < s->joint.record.count; c++) {
+    size_t other = 1;
+    while (s && other < count &&
+           imk_identify_comparable(logs[0], logs[other], true, NULL) == IMK_OK)
+        other++;
+    if (s && other < count)
+        status = imki_compare_rates(s, other, &own);
+    for (size_t c = 0; s && !s->rates && status == IMK_OK && c < s->joint.record.count; c++) {
         imki_arena scratch = {.allocator = s->joint.record.log.allocator};
         status = compare_channel(s, c, &scratch, &own);
         imki_arena_free(&scratch);

@@ -4,6 +4,8 @@
 
 #include "jobs/arena_internal.h"
 
+#include "imukit/distributions.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -21,6 +23,18 @@ imk_status imk_identify_comparable(const imk_identify_log *first, const imk_iden
     return IMK_OK;
 }
 
+/* A likelihood profile reaches as far above the likeliest square as the confidence has sigmas. */
+imk_device_strength imki_strength_of(const imk_estimate *e, double confidence)
+{
+    const double z = imk_normal_quantile(0.5 + confidence / 2);
+    const double centre = e->free_value > 0 ? e->free_value : e->value;
+    imk_device_strength s = {
+        .present = e->present, .value = e->value, .sigma = e->sigma, .bound = e->upper};
+    s.square = centre * centre;
+    s.square_sigma = e->present ? 2 * e->value * e->sigma : (e->upper * e->upper - s.square) / z;
+    return s;
+}
+
 void imk_identify_several_free(imk_identify_several *result)
 {
     if (!result)
@@ -36,7 +50,7 @@ imk_identify_several *imki_several_begin(bool runs, size_t count,
                                          imk_error *error)
 {
     for (size_t r = 1; r < count; r++)
-        if (imk_identify_comparable(logs[0], logs[r], runs, error) != IMK_OK) {
+        if (imk_identify_comparable(logs[0], logs[r], false, error) != IMK_OK) {
             if (error)
                 error->index = (int)r;
             return NULL;

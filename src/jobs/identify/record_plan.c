@@ -56,15 +56,41 @@ static void add_parameter(imk_record_plan *p, const imk_plan_parameter *made, do
     added->low = added->high = value;
 }
 
-static void add_axis(imk_record_plan *p, const imk_expected_noise *noise, int sensor)
+static bool any_of(const imk_triad *triad, const imk_axes *axes)
 {
+    bool any = false;
+    for (int axis = 0; axis < triad->axis_count; axis++)
+        any = any || axes->value[axis] != 0;
+    return any;
+}
+
+/* A record shows one size of the errors of readings. It has the name of the one term that the model
+ * has of them; several together are reading noise at this rate. */
+static imk_term_display reading_term(const imk_log_column *column, const imk_triad *triad,
+                                     double dt)
+{
+    const bool counted = any_of(triad, &triad->noise.quantization);
+    const bool white = any_of(triad, &triad->noise.angle_white);
+    const bool reading = any_of(triad, &triad->noise.reading_noise);
+    return reading || (counted && white) ? imk_channel_reading_noise(column)
+           : white                       ? imk_channel_angle_white(column, dt)
+                                         : imk_channel_term(column, IMK_NOISE_QUANTIZATION);
+}
+
+static void add_axis(const planning *about, const imk_triad *triad, int axis, int sensor)
+{
+    imk_record_plan *p = about->plan;
+    const imk_expected_noise of_axis = imk_expected_noise_of(triad, axis, about->settings.dt);
+    const imk_expected_noise *noise = &of_axis;
     const bool gyro = sensor == IMK_GYRO;
     const imk_log_column column = {.quantity = gyro ? IMK_QUANTITY_ANGULAR_RATE
                                                     : IMK_QUANTITY_SPECIFIC_FORCE,
                                    .unit = imk_unit_of(gyro ? "rad/s" : "m/s^2")};
     imk_plan_parameter made = {.sensor = sensor};
     for (made.term = 0; made.term < IMK_NOISE_TERMS; made.term++) {
-        const imk_term_display display = imk_channel_term(&column, (imk_noise_term)made.term);
+        const imk_term_display display = made.term == IMK_NOISE_QUANTIZATION
+                                             ? reading_term(&column, triad, about->settings.dt)
+                                             : imk_channel_term(&column, (imk_noise_term)made.term);
         made.unit = display.unit;
         snprintf(made.key, sizeof made.key, "%s", display.key);
         if (noise->term[made.term] != 0)
@@ -86,10 +112,8 @@ static void list_parameters(const planning *about)
 {
     for (int sensor = 0; sensor < 2; sensor++) {
         const imk_triad *triad = imk_model_triad(about->model, sensor);
-        for (int axis = 0; triad->present && axis < triad->axis_count; axis++) {
-            const imk_expected_noise noise = imk_expected_noise_of(triad, axis, about->settings.dt);
-            add_axis(about->plan, &noise, sensor);
-        }
+        for (int axis = 0; triad->present && axis < triad->axis_count; axis++)
+            add_axis(about, triad, axis, sensor);
     }
 }
 

@@ -37,6 +37,12 @@ static const struct term_text white_texts[3] = {
     {"velocity_white", "velocity white noise", "m/s/sqrt(Hz)", "m/s/sqrt(Hz)"},
     {"integral_white_noise", "white noise of the integral", " s/sqrt(Hz)", NULL}};
 
+/* Reading noise, in the same order. */
+static const struct term_text reading_texts[3] = {
+    {"reading_noise", "reading noise", "arcsec", "rad"},
+    {"reading_noise", "reading noise", "m/s", "m/s"},
+    {"reading_noise", "reading noise", " s", NULL}};
+
 static imk_term_display display_of(const imk_log_column *column, const struct term_text *text)
 {
     imk_term_display display;
@@ -71,6 +77,11 @@ imk_term_display imk_channel_angle_white(const imk_log_column *column, double dt
     display.unit.scale /= sqrt(dt);
     display.si_scale /= sqrt(dt);
     return display;
+}
+
+imk_term_display imk_channel_reading_noise(const imk_log_column *column)
+{
+    return display_of(column, &reading_texts[imk_channel_kind_of(column)]);
 }
 
 imk_term_display imk_identified_term(const imk_log_column *column, const imk_identification *result,

@@ -2,6 +2,7 @@
 /* Experiment design: what a programme promises is what a simulated bench that runs it gives. */
 #include "check.h"
 
+#include "calibrate/plan/plan_internal.h"
 #include "calibrate/pose_log.h"
 
 #include "imukit/calibration_plan.h"
@@ -75,6 +76,25 @@ static double sigma_of(const session *b, imk_model_parameter wanted)
 
 /* Six exact faces: an axis reads b + (1 + s) f_x + a f_y + c f_z in each, so that var b = v/6 and
  * var s = v/(2 g^2), v = N^2/T + (2 ln 2/pi) B^2. */
+/* Of a mean over T = 20 s the errors of the readings at its two ends count, 2 r^2/T^2; white ones
+ * are A^2/dt with dt = 0.01 s. */
+static void readings_count_at_the_ends(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 3; kind++) {
+        imk_model model;
+        imk_model_default(&model);
+        imk_noise *noise = &model.gyro.noise;
+        (kind == 0   ? &noise->quantization
+         : kind == 1 ? &noise->reading_noise
+                     : &noise->angle_white)
+            ->value[1] = kind == 2 ? 3e-5 : 3e-4;
+        CHECK_RELATIVE(imki_plan_mean_variance(&model.gyro, 1, 0.01, 20.0), 2.0 * 9e-8 / 400.0,
+                       1e-14);
+        CHECK_CLOSE(imki_plan_mean_variance(&model.gyro, 0, 0.01, 20.0), 0.0, 0.0);
+    }
+}
+
 static void six_faces_by_closed_form(void **state)
 {
     (void)state;
@@ -431,6 +451,7 @@ static void mistakes_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(readings_count_at_the_ends),
         cmocka_unit_test(six_faces_by_closed_form),
         cmocka_unit_test(time_follows_from_the_requirement),
         cmocka_unit_test(floors_are_told),

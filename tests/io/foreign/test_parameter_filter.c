@@ -30,6 +30,8 @@ static void fill_model(void)
         model.gyro.bias.repeatability.value[axis] = 1e-3;
         model.accel.noise.white.value[axis] = 1e-3;
         model.accel.noise.quantization.value[axis] = 1e-5;
+        model.accel.noise.reading_noise.value[axis] = 2e-5;
+        model.gyro.noise.angle_white.value[axis] = 3e-7;
     }
     /* One axis without the process keeps its place. */
     model.accel.noise.gauss_markov_count = 1;

@@ -102,6 +102,43 @@ static void one_sided_densities_are_converted(void **state)
     CHECK_RELATIVE(model.gyro.noise.white.value[0], 0.3 * degree / 60, rounding);
 }
 
+/* Densities of the integral: one-sided ones are 1/sqrt(2) of what is stated, those per sqrt(s) are
+ * two-sided always, and a unit per sqrt(Hz) needs `density`. Reading noise and quantization are no
+ * densities. What is read comes back. */
+static void errors_of_readings_are_read(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "imukit: 1\ngyro: {noise: {density: one-sided, angle_white: 0.3 arcsec/sqrt(Hz), "
+        "reading_noise: 2 arcsec, quantization: 1 arcsec}}\naccel: {noise: {density: one-sided, "
+        "velocity_white: 1 mm/s/sqrt(Hz), reading_noise: 3 mm/s}}",
+        "imukit: 1\ngyro: {noise: {density: two-sided, angle_white: 0.3 arcsec/sqrt(Hz), "
+        "reading_noise: 2 arcsec, quantization: 1 arcsec}}\naccel: {noise: {density: two-sided, "
+        "velocity_white: 1 mm/s/sqrt(Hz), reading_noise: 3 mm/s}}",
+        "imukit: 1\ngyro: {noise: {angle_white: 0.3 arcsec*sqrt(s), reading_noise: 2 arcsec, "
+        "quantization: 1 arcsec}}\naccel: {noise: {velocity_white: 1 mm/s*sqrt(s), "
+        "reading_noise: 3 mm/s}}"};
+    for (int i = 0; i < 3; i++) {
+        const imk_model model = parsed(texts[i]);
+        const double sided = i == 0 ? 1 / sqrt(2) : 1;
+        CHECK_RELATIVE(model.gyro.noise.angle_white.value[1], sided * 0.3 * degree / 3600,
+                       2 * rounding);
+        CHECK_RELATIVE(model.gyro.noise.reading_noise.value[1], 2 * degree / 3600, rounding);
+        CHECK_RELATIVE(model.gyro.noise.quantization.value[1], degree / 3600, rounding);
+        CHECK_RELATIVE(model.accel.noise.angle_white.value[2], sided * 1e-3, 2 * rounding);
+        CHECK_RELATIVE(model.accel.noise.reading_noise.value[2], 3e-3, rounding);
+        char *text = printed(&model, NULL);
+        const imk_model back = parsed(text);
+        assert_true(imk_model_equal(&model, &back));
+        free(text);
+    }
+    imk_model model;
+    imk_error error;
+    const char *unstated = "imukit: 1\naccel: {noise: {velocity_white: 1 mm/s/sqrt(Hz)}}";
+    assert_int_not_equal(imk_model_parse(unstated, strlen(unstated), &model, NULL, &error), IMK_OK);
+    assert_string_equal(error.field, "accel.noise.velocity_white");
+}
+
 static void allan_floor_is_the_other_name(void **state)
 {
     (void)state;
@@ -690,7 +727,7 @@ static void examples_of_the_manual_are_models(void **state)
         model = parsed(begin);
         at = end + 1;
     }
-    assert_int_equal(count, 3);
+    assert_int_equal(count, 4);
     assert_int_equal(model.gyro.noise.resonance_count, 1);
     assert_int_equal(model.gyro_evidence.interval_count, 3);
     assert_int_equal(model.correlation.count, 3);
@@ -703,6 +740,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(example_of_the_contract_is_read),
         cmocka_unit_test(one_sided_densities_are_converted),
+        cmocka_unit_test(errors_of_readings_are_read),
         cmocka_unit_test(allan_floor_is_the_other_name),
         cmocka_unit_test(matrices_have_three_forms),
         cmocka_unit_test(temperature_is_read),

@@ -189,13 +189,14 @@ static double stated_heading(const imk_model *model, double latitude)
 
 /* Each term by itself, on the x gyro: its variance of the mean, half of it towards east, over
  * (w_ie cos L)^2. White N^2/T; rounding of readings (step^2/12) dt/T; a resonance as the white
- * noise of its spectrum at 0, 2 s^2/(q w T); quantization of the angle 2 Q^2/T^2; random walk K^2
- * T/3; a sinusoid (a^2/2) (sin x/x)^2, x = pi f T; the fixed ones their own square times what they
- * are of: the Earth's rate along x, and gravity along z. */
+ * noise of its spectrum at 0, 2 s^2/(q w T); quantization of the angle 2 Q^2/T^2, and so other
+ * errors of its readings, of which white ones are A^2/dt with dt = 0.1 s; random walk K^2 T/3; a
+ * sinusoid (a^2/2) (sin x/x)^2, x = pi f T; the fixed ones their own square times what they are of:
+ * the Earth's rate along x, and gravity along z. */
 static void test_terms_of_means(void **state)
 {
     (void)state;
-    enum { CASES = 11 };
+    enum { CASES = 13 };
     const double latitude = 0.6, t = 100.0, s = 1e-6, g = imk_normal_gravity(latitude, 0.0);
     const imk_vector3 earth = imk_earth_rate(latitude);
     const double along = earth.v[0] * sqrt(0.5), x = 3.14159265358979324 * 0.013 * t;
@@ -242,6 +243,12 @@ static void test_terms_of_means(void **state)
             break;
         case 9:
             gyro->cross_axis.sigma[0][2] = s, expected *= earth.v[2] * earth.v[2];
+            break;
+        case 10:
+            gyro->noise.reading_noise.value[0] = s, expected *= 2.0 / (t * t);
+            break;
+        case 11:
+            gyro->noise.angle_white.value[0] = s, expected *= 2.0 / (0.1 * t * t);
             break;
         default:
             gyro->g_sensitivity.sigma[0][2] = s, expected *= g * g;

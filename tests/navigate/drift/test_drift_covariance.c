@@ -434,13 +434,8 @@ static void drivers_have_their_limits(void **state)
 }
 
 /* The angle carried is seen as it is; of velocity, sqrt 2 of what is carried at start and end. */
-static void quantization_stays_what_is_carried(void **state)
+static void check_readings(imk_model model)
 {
-    (void)state;
-    imk_model model;
-    imk_model_default(&model);
-    set_all(&model.gyro.noise.quantization, 1e-5);
-    set_all(&model.accel.noise.quantization, 1e-3);
     const imk_drift_moments m = total_at(wgs84, &model, imk_drift_default(), 1);
     for (int i = 0; i < 3; i++)
         CHECK_RELATIVE(sigma(&m, 6 + i), 1e-5 * sqrt(2), 1e-3);
@@ -448,6 +443,27 @@ static void quantization_stays_what_is_carried(void **state)
      * the start's acts all the time, the others' as white noise of 1e-5 sqrt(dt) */
     const double tilted = 1e-5 * 9.806 * sqrt(1 + 0.01);
     CHECK_RELATIVE(sigma(&m, 3), sqrt(2e-6 + tilted * tilted), 1e-3);
+}
+
+/* Other errors of readings do the same; white ones are A/sqrt(dt) of 1/dt = 100 Hz. */
+static void quantization_stays_what_is_carried(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 3; kind++) {
+        imk_model model;
+        imk_model_default(&model);
+        imk_noise *gyro = &model.gyro.noise, *accel = &model.accel.noise;
+        const double size = kind == 2 ? 0.1 : 1.0;
+        set_all(kind == 0   ? &gyro->quantization
+                : kind == 1 ? &gyro->reading_noise
+                            : &gyro->angle_white,
+                size * 1e-5);
+        set_all(kind == 0   ? &accel->quantization
+                : kind == 1 ? &accel->reading_noise
+                            : &accel->angle_white,
+                size * 1e-3);
+        check_readings(model);
+    }
 }
 
 /* ---- self-alignment ---- */

@@ -431,6 +431,33 @@ static void test_compensated_biases(void **state)
         }
 }
 
+/* Errors of readings: of the angle what two readings have, sqrt(2) r, whether r is stated or is
+ * A/sqrt(dt) of 1/dt = 100 Hz; chi-square of the runs at 1e-7 each side. */
+static void test_readings(void **state)
+{
+    (void)state;
+    enum { RUNS = 160 };
+    const double t = 1.0, size = 1e-5;
+    static double errors[RUNS][STATES];
+    for (int white = 0; white < 2; white++) {
+        imk_model model;
+        imk_model_default(&model);
+        for (int i = 0; i < 3; i++)
+            (white ? &model.gyro.noise.angle_white : &model.gyro.noise.reading_noise)->value[i] =
+                white ? 0.1 * size : size;
+        imk_drift_settings settings = imk_drift_default();
+        settings.time = &t;
+        settings.time_count = 1;
+        compute(&model, &settings, 4, 1, RUNS, errors[0]);
+        double sum = 0.0;
+        for (size_t k = 0; k < RUNS; k++)
+            for (size_t i = 6; i < 9; i++)
+                sum += errors[k][i] * errors[k][i] / (2.0 * size * size);
+        const double probability = imk_chi_square_probability(sum, 3.0 * RUNS);
+        assert_true(probability > 1e-7 && probability < 1.0 - 1e-7);
+    }
+}
+
 /* ---- draws ---- */
 
 /* Every parameter: its number in the stream and where it stands; values of these are no longer
@@ -744,6 +771,7 @@ int main(void)
         cmocka_unit_test(test_perfect),
         cmocka_unit_test(test_biases),
         cmocka_unit_test(test_compensated_biases),
+        cmocka_unit_test(test_readings),
         cmocka_unit_test(test_residual_numbers),
         cmocka_unit_test(test_residual_distribution),
         cmocka_unit_test(test_initial),

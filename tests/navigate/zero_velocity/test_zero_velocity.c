@@ -546,6 +546,13 @@ static void test_description(void **state)
     CHECK_CLOSE(s.gyro.part[1].sigma[2], 1e-6, 0.0);
     CHECK_CLOSE(s.gyro.part[2].sigma[1], 1e-6, 0.0);
     CHECK_CLOSE(s.gyro.part[2].sigma[2], 0.0, 0.0);
+    /* Errors of readings, of which the white ones are A/sqrt(dt). */
+    set3(model.gyro.noise.quantization.value, 3e-6);
+    set3(model.gyro.noise.reading_noise.value, 4e-6);
+    set3(model.accel.noise.angle_white.value, 1e-4);
+    CHECK_OK(imk_zero_velocity_describe(&model, 0.01, (imk_vector3){{0}}, force, &s, &error));
+    CHECK_RELATIVE(s.gyro.quantization[1], 5e-6, 1e-14);
+    CHECK_RELATIVE(s.accel.quantization[1], 1e-3, 1e-14);
     model.gyro.axis_count = 4;
     CHECK_STATUS(imk_zero_velocity_describe(&model, 0.01, (imk_vector3){{0}}, force, &s, &error),
                  IMK_ERROR_UNSUPPORTED);

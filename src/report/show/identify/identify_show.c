@@ -25,8 +25,18 @@ static void terms_data(const imk_identify_log *log, size_t channel, imk_result *
     const imk_log_column *column = imk_even_record_column(&log->record, channel);
     const imk_identification *r = &log->result[channel];
     const int terms = log->origin == IMK_IDENTIFY_RECORDS ? IMK_NOISE_RAMP : IMK_NOISE_TERMS;
+    const imk_reading_parts *parts = log->readings ? &log->readings[channel] : NULL;
+    const bool parted = parts && parts->kind != IMK_READING_UNTOLD;
     imk_result_object(result, "terms");
-    for (int term = 0; term < terms; term++) {
+    if (parted) {
+        const imk_term_display reading = imk_channel_reading_noise(column);
+        const imk_term_display white = imk_channel_angle_white(column, 1);
+        estimate_data(result, imk_result_key(result, "%s", reading.key), &parts->reading_noise,
+                      reading.si_scale, reading.si);
+        estimate_data(result, imk_result_key(result, "%s", white.key), &parts->angle_white,
+                      white.si_scale, white.si);
+    }
+    for (int term = parted ? IMK_NOISE_WHITE : 0; term < terms; term++) {
         const imk_term_display display = imk_identified_term(column, r, (imk_noise_term)term);
         estimate_data(result, imk_result_key(result, "%s", display.key), &r->term[term],
                       display.si_scale, display.si);

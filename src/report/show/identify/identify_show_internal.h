@@ -55,6 +55,12 @@ void imki_verdict_noise_changes(imk_verdict *verdict, const imk_identify_log *lo
 void imki_noise_changes_data(const imk_identify_log *log, size_t channel, imk_unit unit,
                              imk_result *result);
 void imki_noise_changes_figure(const imk_identify_shown *shown, imk_result *result);
+/* Names and units of a term of several records: those of the joint estimate. Sensors have their
+ * own, and what none of them counts is white noise of the integral, or reading noise if their rates
+ * differ. */
+imk_term_display imki_several_term(const imk_identify_several *s, size_t channel,
+                                   imk_noise_term term);
+
 /* Truth beside the estimates, and how many intervals cover it. */
 void imki_truth_table(const imk_identify_shown *shown, imk_result *result);
 

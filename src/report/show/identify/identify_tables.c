@@ -24,23 +24,34 @@ static void estimate_rows(imk_table *table, const char *name, imk_unit unit,
                       estimates[k] ? imki_interval(estimates[k], unit.scale).text : "");
 }
 
+/* What logs at several rates have told of a channel. */
+static const imk_reading_parts *parts_of(const imk_identify_log *log, size_t channel)
+{
+    return log->readings && log->readings[channel].kind != IMK_READING_UNTOLD
+               ? &log->readings[channel]
+               : NULL;
+}
+
 /* What was counted, and what was white noise of the integral. */
 static void reading_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
                          size_t members)
 {
     const imk_log_column *column = imk_even_record_column(&log->record, member[0]);
     const imk_estimate *rows[2][IMK_LOG_COLUMNS_MAX] = {{NULL}};
-    bool any[2] = {false, false};
+    bool any[2] = {false, false}, alone = false;
     for (size_t k = 0; k < members; k++) {
         const imk_identification *r = &log->result[member[k]];
         const imk_estimate *e = &r->term[IMK_NOISE_QUANTIZATION];
         const bool white = e->present && !imk_identification_counted(r);
+        if (parts_of(log, member[k]))
+            continue;
+        alone = true;
         rows[white][k] = e;
         any[white] = any[white] || e->present;
     }
     const imk_term_display display[2] = {imk_channel_term(column, IMK_NOISE_QUANTIZATION),
                                          imk_channel_angle_white(column, log->record.dt)};
-    for (int white = 0; white < 2; white++) {
+    for (int white = 0; white < 2 && alone; white++) {
         if (white ? !any[1] : any[1] && !any[0])
             continue;
         for (size_t k = 0; k < members && !any[!white]; k++)
@@ -48,6 +59,26 @@ static void reading_rows(imk_table *table, const imk_identify_log *log, const si
         estimate_rows(table, display[white].name, display[white].unit, rows[white], members,
                       log->settings.confidence);
     }
+}
+
+/* What logs at several rates have parted. */
+static void parted_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
+                        size_t members)
+{
+    const imk_log_column *column = imk_even_record_column(&log->record, member[0]);
+    const imk_term_display display[2] = {imk_channel_reading_noise(column),
+                                         imk_channel_angle_white(column, 1)};
+    const imk_estimate *rows[2][IMK_LOG_COLUMNS_MAX] = {{NULL}};
+    bool any = false;
+    for (size_t k = 0; k < members; k++) {
+        const imk_reading_parts *parts = parts_of(log, member[k]);
+        rows[0][k] = parts ? &parts->reading_noise : NULL;
+        rows[1][k] = parts ? &parts->angle_white : NULL;
+        any = any || parts;
+    }
+    for (int white = 0; white < 2 && any; white++)
+        estimate_rows(table, display[white].name, display[white].unit, rows[white], members,
+                      log->settings.confidence);
 }
 
 static void term_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
@@ -58,6 +89,7 @@ static void term_rows(imk_table *table, const imk_identify_log *log, const size_
     const imk_estimate *estimates[IMK_LOG_COLUMNS_MAX], *times[IMK_LOG_COLUMNS_MAX];
     const double confidence = log->settings.confidence;
     reading_rows(table, log, member, members);
+    parted_rows(table, log, member, members);
     for (int term = IMK_NOISE_WHITE; term < IMK_NOISE_TERMS; term++) {
         const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
         for (size_t k = 0; k < members; k++)
@@ -156,25 +188,47 @@ static double true_value(const imk_identify_shown *shown, size_t channel, imk_no
     return value[term];
 }
 
-static void truth_row(imk_table *table, const imk_identify_shown *shown, size_t channel,
-                      imk_noise_term term, size_t *covered)
+static void truth_row(imk_table *table, const imk_log_column *column,
+                      const imk_term_display *display, double truth, const imk_estimate *e,
+                      size_t *covered)
 {
-    const imk_log_column *column = imk_even_record_column(&shown->log->record, channel);
-    const imk_estimate *e = &shown->log->result[channel].term[term];
-    const double truth = true_value(shown, channel, term);
-    const bool ramp = term == IMK_NOISE_RAMP;
-    if (isnan(truth) || (truth == 0 && !e->present) ||
-        (ramp && shown->log->origin == IMK_IDENTIFY_RECORDS))
+    if (isnan(truth) || (truth == 0 && !e->present))
         return;
-    const imk_term_display display =
-        imk_identified_term(column, &shown->log->result[channel], term);
-    const double scale = display.unit.scale, size = ramp ? truth : fabs(truth);
-    const bool inside = size >= e->lower && size <= e->upper;
-    imk_table_row(table, "%s\t%s\t%.4g\t%s\t%s\t%s\t%s", column->name, display.name, truth / scale,
+    const double scale = display->unit.scale;
+    const bool inside = truth >= e->lower && truth <= e->upper;
+    imk_table_row(table, "%s\t%s\t%.4g\t%s\t%s\t%s\t%s", column->name, display->name, truth / scale,
                   e->present ? imki_value(e->value / scale, e->sigma / scale, 4).text : "absent",
-                  imki_range(e->lower, e->upper, scale).text, display.unit.text,
+                  imki_range(e->lower, e->upper, scale).text, display->unit.text,
                   inside ? "yes" : "no");
     *covered += inside;
+}
+
+static void truth_rows(imk_table *table, const imk_identify_shown *shown, size_t channel,
+                       size_t *covered)
+{
+    const imk_identify_log *log = shown->log;
+    const imk_log_column *column = imk_even_record_column(&log->record, channel);
+    const imk_reading_parts *parts = parts_of(log, channel);
+    const int terms = log->origin == IMK_IDENTIFY_RECORDS ? IMK_NOISE_RAMP : IMK_NOISE_TERMS;
+    const imk_triad *triad = imk_model_triad(
+        shown->truth, column->quantity == IMK_QUANTITY_ANGULAR_RATE ? IMK_GYRO : IMK_ACCEL);
+    if (parts && triad->present && column->axis >= 0 && column->axis < triad->axis_count) {
+        const imk_term_display reading = imk_channel_reading_noise(column);
+        const imk_term_display white = imk_channel_angle_white(column, 1);
+        truth_row(table, column, &reading,
+                  hypot(triad->noise.reading_noise.value[column->axis],
+                        triad->noise.quantization.value[column->axis]),
+                  &parts->reading_noise, covered);
+        truth_row(table, column, &white, triad->noise.angle_white.value[column->axis],
+                  &parts->angle_white, covered);
+    }
+    for (int term = parts ? IMK_NOISE_WHITE : 0; term < terms; term++) {
+        const imk_identification *r = &log->result[channel];
+        const imk_term_display display = imk_identified_term(column, r, (imk_noise_term)term);
+        const double truth = true_value(shown, channel, (imk_noise_term)term);
+        truth_row(table, column, &display, term == IMK_NOISE_RAMP ? truth : fabs(truth),
+                  &r->term[term], covered);
+    }
 }
 
 void imki_truth_table(const imk_identify_shown *shown, imk_result *result)
@@ -185,8 +239,7 @@ void imki_truth_table(const imk_identify_shown *shown, imk_result *result)
     imk_table_row(table, "channel\tterm\ttruth\testimate\tinterval\tunit\tcovered");
     for (size_t c = 0; c < record->count; c++)
         if (imk_channel_kind_of(imk_even_record_column(record, c)) != IMK_CHANNEL_OTHER)
-            for (int term = 0; term < IMK_NOISE_TERMS; term++)
-                truth_row(table, shown, c, (imk_noise_term)term, &covered);
+            truth_rows(table, shown, c, &covered);
     if (shown->log->origin == IMK_IDENTIFY_RECORDS)
         imk_result_gap(result);
     imk_result_line(result, "%zu of %zu intervals cover the truth; %g %% are expected to.", covered,

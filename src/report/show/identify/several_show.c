@@ -122,10 +122,7 @@ static void channel_table(const imk_identify_several *s, size_t channel,
     imk_table *table = imk_result_table(result, 0);
     imk_table_row(table, "%s", column_of(s, channel)->name);
     for (int term = 0; term < IMK_NOISE_RAMP; term++) {
-        const imk_term_display display =
-            s->runs ? imk_identified_term(column_of(s, channel), &s->joint.result[channel],
-                                          (imk_noise_term)term)
-                    : imk_channel_term(column_of(s, channel), (imk_noise_term)term);
+        const imk_term_display display = imki_several_term(s, channel, (imk_noise_term)term);
         if (s->runs ? !s->joint.result[channel].term[term].present && term != IMK_NOISE_WHITE
                     : !s->term[channel][term].compared)
             continue;
@@ -137,6 +134,27 @@ static void channel_table(const imk_identify_several *s, size_t channel,
         run_rows(table, s, channel, records, &shown);
     else
         device_rows(table, s, channel, records, &shown);
+    imk_result_gap(result);
+}
+
+/* 1 sigma of a reading at each rate, and what explains it. */
+static void rates_table(const imk_identify_several *s, size_t channel,
+                        const imk_identify_shown *records, imk_result *result)
+{
+    const imk_term_display display = imk_channel_reading_noise(column_of(s, channel));
+    const imk_reading_parts *parts = &s->readings[channel];
+    if (parts->count == 0)
+        return;
+    imk_table *table = imk_result_table(result, 0);
+    imk_table_row(table, "%s\tat\t1 sigma of a reading [%s]", column_of(s, channel)->name,
+                  display.unit.text);
+    for (size_t r = 0; r < s->count; r++) {
+        const imk_estimate *e = &s->log[r]->result[channel].term[IMK_NOISE_QUANTIZATION];
+        imk_table_row(table, "%.60s\t%.6g Hz", records[r].label, 1 / s->log[r]->record.dt);
+        value_cell(table, e->present, e->value, e->sigma, e->upper, display.unit.scale);
+    }
+    if (parts->degrees > 0)
+        imk_table_row(table, "chance if so\t\t%s", imki_chance(parts->probability).text);
     imk_result_gap(result);
 }
 
@@ -179,10 +197,7 @@ static void run_data(const imk_identify_several *s, size_t channel,
     imk_result_number(result, "probability", a->probability);
     if (imki_begin_object(result, "largest_difference", a->record >= 0 && a->term >= 0)) {
         imk_result_text(result, "log", records[a->record].label);
-        imk_result_text(result, "term",
-                        imk_identified_term(column_of(s, channel), &s->joint.result[channel],
-                                            (imk_noise_term)a->term)
-                            .key);
+        imk_result_text(result, "term", imki_several_term(s, channel, (imk_noise_term)a->term).key);
         imk_result_number(result, "sigmas", a->sigmas);
         imk_result_end(result);
     }
@@ -197,16 +212,31 @@ static void run_data(const imk_identify_several *s, size_t channel,
     imk_result_end(result);
 }
 
+static void rates_data(const imk_identify_several *s, size_t channel, imk_result *result)
+{
+    static const char *const kinds[] = {"cannot be told", "reading noise",
+                                        "white noise of the integral", "both"};
+    const imk_reading_parts *parts = &s->readings[channel];
+    imki_channel_data(&s->joint, channel, result);
+    if (imki_begin_object(result, "readings", parts->count > 0)) {
+        imk_result_text(result, "kind", kinds[parts->kind]);
+        imk_result_number(result, "chi_square", parts->chi_square);
+        imk_result_count(result, "degrees", (long long)parts->degrees);
+        imk_result_number(result, "probability", parts->probability);
+        imk_result_end(result);
+    }
+    imk_result_end(result);
+}
+
 static void population_data(const imk_identify_several *s, size_t channel, imk_result *result)
 {
     const imk_log_column *column = column_of(s, channel);
-    const bool other = imk_channel_kind_of(column) == IMK_CHANNEL_OTHER;
-    const double scale = other ? imk_channel_plain_unit(column).scale : 1;
     imk_result_object(result, NULL);
     imk_result_text(result, "name", column->name);
     imk_result_object(result, "population");
     for (int term = 0; term < IMK_NOISE_RAMP; term++) {
-        const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
+        const imk_term_display display = imki_several_term(s, channel, (imk_noise_term)term);
+        const double scale = display.si_scale;
         const imk_device_term *t = &s->term[channel][term];
         const char *key = imk_result_key(result, "%s", display.key);
         if (!imki_begin_object(result, key, t->compared))
@@ -246,12 +276,16 @@ static void show_data(const imk_identify_several *s, const imk_identify_shown *j
         imk_result_text(result, NULL, records[r].name);
     imk_result_end(result);
     imk_result_text(result, "together", s->runs ? "runs" : "devices");
+    if (s->rates)
+        imk_result_text(result, "longest", records[s->longest].name);
     imk_result_number(result, "confidence", s->joint.settings.confidence);
     imk_result_end(result);
     imk_result_object(result, "result");
     imk_result_array(result, "channels");
     for (size_t c = 0; c < s->joint.record.count; c++)
-        if (s->runs)
+        if (s->rates)
+            rates_data(s, c, result);
+        else if (s->runs)
             run_data(s, c, records, result);
         else
             population_data(s, c, result);
@@ -266,12 +300,27 @@ static void show_data(const imk_identify_several *s, const imk_identify_shown *j
 
 /* ---- display --------------------------------------------------------------------------------- */
 
-static void show_joint(const imk_identify_shown *joint, imk_result *result)
+static void show_joint(const imk_identify_several *s, const imk_identify_shown *joint,
+                       const imk_identify_shown *records, imk_result *result)
 {
     imk_result_for(result, IMK_FOR_PAGE);
-    imk_result_heading(result, "Joint estimate");
+    imk_result_heading(result, s->rates ? "Estimate" : "Joint estimate");
     imk_result_for(result, IMK_FOR_BOTH);
     imki_identify_tables(joint->log, result);
+    if (s->rates) {
+        imk_result_line(result,
+                        "Reading noise and white noise of the integral are those of all "
+                        "logs where they tell them apart. All else is that of %.60s, the "
+                        "longest.",
+                        records[s->longest].label);
+        imk_result_gap(result);
+        imk_result_for(result, IMK_FOR_PAGE);
+        imki_identify_figure(joint,
+                             "Points: the Allan deviations of the longest log, with "
+                             "confidence intervals. Line: its model.",
+                             result);
+        return;
+    }
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_line(result, "One set of terms for all logs, by maximum likelihood on their spectra "
                             "together. Each log has its own mean, ramp and lines.");
@@ -286,12 +335,14 @@ static void show_joint(const imk_identify_shown *joint, imk_result *result)
 static void show_bias(const imk_identify_several *s, const imk_identify_shown *joint,
                       imk_result *result)
 {
-    bias_table(s, result);
-    imk_result_for(result, IMK_FOR_PAGE);
-    imk_result_line(
-        result,
-        "Noise within a run: the difference that the joint model predicts between the means of two "
-        "runs without a break. Any further difference is a change from run to run.");
+    if (!s->rates) {
+        bias_table(s, result);
+        imk_result_for(result, IMK_FOR_PAGE);
+        imk_result_line(result,
+                        "Noise within a run: the difference that the joint model predicts between "
+                        "the means of two runs without a break. Any further difference is a change "
+                        "from run to run.");
+    }
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (joint->truth)
         imki_truth_table(joint, result);
@@ -300,12 +351,16 @@ static void show_bias(const imk_identify_several *s, const imk_identify_shown *j
 void imk_show_identify_several(const imk_identify_several *s, const imk_identify_shown *joint,
                                const imk_identify_shown *records, imk_result *result)
 {
+    double duration = 0;
+    for (size_t r = 0; r < s->count; r++)
+        duration += s->log[r]->duration;
     show_data(s, joint, records, result);
     imk_result_title(result,
-                     s->runs ? "Noise of an inertial sensor over several runs"
-                             : "Noise of several inertial sensors",
+                     s->rates  ? "Noise of an inertial sensor at several rates"
+                     : s->runs ? "Noise of an inertial sensor over several runs"
+                               : "Noise of several inertial sensors",
                      "%.150s: %zu logs of %zu channels, %s together", joint->name, s->count,
-                     s->joint.record.count, imki_duration(s->joint.duration).text);
+                     s->joint.record.count, imki_duration(duration).text);
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, "Verdict");
     imki_verdict_boxes(&joint->verdict, result);
@@ -316,12 +371,17 @@ void imk_show_identify_several(const imk_identify_several *s, const imk_identify
             imk_result_line(result, "%s: %s", records[r].label,
                             imk_identify_sentence(&records[r].verdict));
     if (s->runs)
-        show_joint(joint, result);
+        show_joint(s, joint, records, result);
     imk_result_for(result, IMK_FOR_PAGE);
-    imk_result_heading(result, s->runs ? "Run by run" : "Sensor by sensor");
+    imk_result_heading(result, s->rates  ? "Rate by rate"
+                               : s->runs ? "Run by run"
+                                         : "Sensor by sensor");
     imk_result_for(result, IMK_FOR_BOTH);
     for (size_t c = 0; c < s->joint.record.count; c++)
-        channel_table(s, c, records, result);
+        if (s->rates)
+            rates_table(s, c, records, result);
+        else
+            channel_table(s, c, records, result);
     if (s->runs)
         show_bias(s, joint, result);
     imk_result_for(result, IMK_FOR_PAGE);

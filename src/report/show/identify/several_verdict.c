@@ -2,11 +2,33 @@
 /* The verdict on several records together: do runs agree, do devices differ? */
 #include "identify_show_internal.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static const imk_log_column *column_of(const imk_identify_several *s, size_t channel)
 {
     return imk_even_record_column(&s->joint.record, channel);
+}
+
+imk_term_display imki_several_term(const imk_identify_several *s, size_t channel,
+                                   imk_noise_term term)
+{
+    const imk_log_column *column = column_of(s, channel);
+    const double dt = s->joint.record.dt;
+    bool white = false, counted = false, alike = true;
+    if (s->runs)
+        return imk_identified_term(column, &s->joint.result[channel], term);
+    for (size_t r = 0; r < s->count && term == IMK_NOISE_QUANTIZATION; r++) {
+        const imk_identification *one = &s->log[r]->result[channel];
+        if (one->term[term].present && imk_identification_counted(one))
+            counted = true;
+        else if (one->term[term].present)
+            white = true;
+        alike = alike && fabs(s->log[r]->record.dt / dt - 1) < 1e-3;
+    }
+    return !white || counted ? imk_channel_term(column, term)
+           : alike           ? imk_channel_angle_white(column, dt)
+                             : imk_channel_reading_noise(column);
 }
 
 /* ---- runs ------------------------------------------------------------------------------------ */
@@ -24,8 +46,7 @@ static void tell_run(imk_verdict *v, const imk_identify_several *s, size_t chann
                          column->name, chance.text);
         return;
     }
-    const imk_term_display display =
-        imk_identified_term(column, &s->joint.result[channel], (imk_noise_term)a->term);
+    const imk_term_display display = imki_several_term(s, channel, (imk_noise_term)a->term);
     const double scale = display.unit.scale;
     imki_verdict_add(
         v, IMK_FINDING_WARNING, "runs_differ",
@@ -79,6 +100,42 @@ static void assess_runs(imk_verdict *v, const imk_identify_several *s, const cha
     }
 }
 
+/* ---- rates ----------------------------------------------------------------------------------- */
+
+/* The channels of which a kind is told. */
+static void tell_kind(imk_verdict *v, const imk_identify_several *s, imk_reading_kind kind)
+{
+    static const char *const codes[] = {"readings_untold", "readings_alike", "readings_white",
+                                        "readings_both"};
+    static const char *const texts[] = {
+        ": the logs cannot tell reading noise, the same at each rate, from white noise of the "
+        "integral: rates farther apart, or longer logs at the highest and the lowest, tell.",
+        ": reading noise, the same at each rate.",
+        ": white noise of the integral, whose readings scatter less at a lower rate.",
+        ": both reading noise, the same at each rate, and white noise of the integral."};
+    imki_text list = {.bytes = NULL};
+    for (size_t c = 0; c < s->joint.record.count; c++) {
+        const imk_reading_parts *parts = &s->readings[c];
+        if (parts->count > 0 && parts->kind == kind && !s->differs[c])
+            imki_text_add(&list, "%s%s", list.size > 0 ? ", " : "", column_of(s, c)->name);
+    }
+    imki_verdict_list(v, IMK_FINDING_NOTE, codes[kind], "", &list, texts[kind]);
+}
+
+static void assess_rates(imk_verdict *v, const imk_identify_several *s)
+{
+    for (size_t c = 0; c < s->joint.record.count; c++)
+        if (s->differs[c])
+            imki_verdict_add(v, IMK_FINDING_WARNING, "readings_differ",
+                             "%s: neither reading noise nor white noise of the integral nor both "
+                             "explain the readings at these rates (chance %s): a filter that "
+                             "changes with the rate, or different settings; identify the logs "
+                             "separately.",
+                             column_of(s, c)->name, imki_chance(s->readings[c].probability).text);
+    for (int kind = IMK_READING_UNTOLD; kind <= IMK_READING_BOTH; kind++)
+        tell_kind(v, s, (imk_reading_kind)kind);
+}
+
 /* ---- devices --------------------------------------------------------------------------------- */
 
 static imki_words strength_words(const imk_device_strength *s, double scale)
@@ -95,7 +152,7 @@ static void tell_difference(imk_verdict *v, const imk_identify_several *s, size_
                             const char *const *labels)
 {
     const imk_device_term *t = &s->term[channel][term];
-    const imk_term_display display = imk_channel_term(column_of(s, channel), (imk_noise_term)term);
+    const imk_term_display display = imki_several_term(s, channel, (imk_noise_term)term);
     imki_verdict_add(v, IMK_FINDING_NOTE, "devices_differ",
                      "%s: %s differs: %s %s in %s, %s in %s (%.1f sigmas; chance if all were alike "
                      "%s).",
@@ -158,7 +215,9 @@ imk_verdict imk_several_verdict(const imk_identify_several *s, const char *const
                                 imk_result *result)
 {
     imk_verdict v = {.result = result};
-    if (s->runs)
+    if (s->rates)
+        assess_rates(&v, s);
+    else if (s->runs)
         assess_runs(&v, s, labels);
     else
         assess_devices(&v, s, labels);

@@ -74,7 +74,6 @@ static bool find_saturated(const imk_identify_log *log, size_t channel, imki_tex
     return s->saturated.count > 0;
 }
 
-/* Tones have many largest values; resonances and filters may. */
 /* Where uniform errors of counting behind a dither are all there is, two readings differ by a step
  * at most, and the values end there by themselves. */
 static bool ends_by_counting(const imk_identification *r, double end)
@@ -84,6 +83,7 @@ static bool ends_by_counting(const imk_identification *r, double end)
     return q->present && r->dt > 0 && fabs(fabs(end - r->mean) * r->dt - step) < 0.1 * step;
 }
 
+/* Tones have many largest values; resonances and filters may. */
 static bool find_ends(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_screen *s = &log->screen[channel];
