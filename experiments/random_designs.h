@@ -312,6 +312,10 @@ static inline imk_laboratory short_experiments(const imk_instrument *instrument,
     /* 64 samples to a cycle: of a high bandwidth, the time to settle has too many of them */
     laboratory.frequencies = bandwidth > 0.0 && bandwidth * laboratory.settle < 1000.0 ? 6 : 0;
     laboratory.record = 0.0;
+    laboratory.cycles = 3;
+    /* what these points take, and no more: what is not told within it is left */
+    laboratory.longest =
+        laboratory.cycles * (2.0 * laboratory.points + 12.0) * (laboratory.settle + laboratory.dwell);
     return laboratory;
 }
 
