@@ -314,8 +314,8 @@ static inline imk_laboratory short_experiments(const imk_instrument *instrument,
     laboratory.record = 0.0;
     laboratory.cycles = 3;
     /* what these points take, and no more: what is not told within it is left */
-    laboratory.longest =
-        laboratory.cycles * (2.0 * laboratory.points + 12.0) * (laboratory.settle + laboratory.dwell);
+    laboratory.longest = laboratory.cycles * (2.0 * laboratory.points + 12.0) *
+                         (laboratory.settle + laboratory.dwell);
     return laboratory;
 }
 

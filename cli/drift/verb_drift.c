@@ -138,10 +138,11 @@ static int open_models(work *w)
         code = command_model(w->name[m], w->model[m], NULL);
         const int added = code < 0 ? imk_model_complete(w->model[m]) : -1;
         if (added >= 0)
-            command_note("%s has no %s: perfect ones are taken, so that all errors are those of its "
-                         "%s",
-                         w->name[m], added == IMK_GYRO ? "gyros" : "accelerometers",
-                         added == IMK_GYRO ? "accelerometers" : "gyros");
+            command_note(
+                "%s has no %s: perfect ones are taken, so that all errors are those of its "
+                "%s",
+                w->name[m], added == IMK_GYRO ? "gyros" : "accelerometers",
+                added == IMK_GYRO ? "accelerometers" : "gyros");
         if (code < 0)
             code = term_selection_apply(&w->o->terms, w->model[m]);
     }

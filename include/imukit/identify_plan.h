@@ -36,7 +36,8 @@ typedef struct imk_identify_seen {
  *  records of this duration [s] and of samples dt [s] apart of this axis: those of the model if the
  *  axis has no bandwidth; for a bandwidth beyond half the sample rate some percent less
  *  [WHITE1982]. Takes about 10 ms.
- *  @param readings  errors of the readings are part of the estimate; if not, white noise has them */
+ *  @param readings  errors of the readings are part of the estimate; if not, white noise has them
+ */
 IMK_API imk_identify_seen imk_identify_seen_of(const imk_triad *triad, int axis, double dt,
                                                double duration, bool readings);
 

@@ -243,8 +243,8 @@ IMK_API double imk_noise_reading(const imk_noise *noise, int axis, double dt);
  *  magnetometer. */
 IMK_API void imk_model_default(imk_model *model);
 
-/** Give a model of gyros alone, or of accelerometers alone, three perfect sensors of the other kind,
- *  along x, y and z: what a navigator needs beside them.
+/** Give a model of gyros alone, or of accelerometers alone, three perfect sensors of the other
+ *  kind, along x, y and z: what a navigator needs beside them.
  *  @return the kind that was added, IMK_GYRO or IMK_ACCEL; -1: both were there */
 IMK_API int imk_model_complete(imk_model *model);
 

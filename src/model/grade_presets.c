@@ -5,7 +5,7 @@
  * (quantization, squares of force), our choice: the quantization
  * about as large as the noise of a hundredth of a second. tests/model/test_position_claims.c
  * computes the position error of each. */
-#include "device_table_internal.h"
+#include "devices/device_table_internal.h"
 
 #define SOURCE "typical of the class: doi 10.1186/s43020-019-0001-5 table 1; Groves 2013, chapter 4"
 #define CLASS_METHOD "class of instruments"

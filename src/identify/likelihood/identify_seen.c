@@ -13,8 +13,8 @@
  *
  *     a_j <- a_j sqrt(sum h_j S/M^2 / sum h_j/M),
  *
- * which keeps them positive and never makes the distance larger [FEVOTTE2011]. Frequencies are taken
- * in bands of equal ratio, each with the weight of its width. */
+ * which keeps them positive and never makes the distance larger [FEVOTTE2011]. Frequencies are
+ * taken in bands of equal ratio, each with the weight of its width. */
 #include "imukit/identify_plan.h"
 
 #include <math.h>

@@ -80,8 +80,8 @@ imk_low_pass imki_filter_find(imki_fit *fit, const imki_bands *bands)
     bool sign = false;
     for (double bandwidth = 2; bandwidth > 0.01 && !sign; bandwidth *= 0.15)
         sign = likelihood_with(fit, bands, (imk_low_pass){bandwidth / bands->dt, 0}) > plain + 1;
-    /* A second order far inside the band leaves a fourth power of the frequency, which is no sign of
-     * a first order. */
+    /* A second order far inside the band leaves a fourth power of the frequency, which is no sign
+     * of a first order. */
     for (double bandwidth = 0.1; bandwidth > 0.01 && !sign; bandwidth *= 0.5)
         sign = likelihood_with(fit, bands, (imk_low_pass){bandwidth / bands->dt, 0.7}) > plain + 1;
     if (!sign) {

@@ -6,7 +6,7 @@
  *     B = floor / sqrt(2 ln 2/pi) = floor / 0.664     [IEEE952] */
 #include "base/text_internal.h"
 #include "device_table_internal.h"
-#include "model_schema_internal.h"
+#include "model/model_schema_internal.h"
 
 #include "imukit/names.h"
 #include "imukit/units.h"
