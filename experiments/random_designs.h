@@ -59,11 +59,12 @@ static const design_attempt design_attempts[DESIGN_ATTEMPTS] = {
     {1e-4, 1.0, false, "agrees at a ten-thousandth of the inputs without noise"}};
 
 /* What the model says itself, where no attempt agrees. */
-enum { SAYS_NOTHING = 0, SAYS_STEPS, SAYS_ERRORS, SAYS_OPEN, SAYINGS };
+enum { SAYS_NOTHING = 0, SAYS_STEPS, SAYS_ERRORS, SAYS_OPEN, SAYS_FALLEN, SAYINGS };
 static const char *const design_sayings[SAYINGS] = {
     "", "the stated step or dead band is above 5 % of full scale",
     "a stated error is above 30 % of full scale: no small input",
-    "a free rotor on a residual spring: it drifts as it tilts"};
+    "a free rotor on a residual spring: it drifts as it tilts",
+    "the ball touches its stop at 1 g, of which the sweep warns"};
 
 /* ---- a design at random ---------------------------------------------------------------------- */
 
@@ -342,6 +343,14 @@ static inline bool is_free_rotor(const imk_instrument *instrument, const void *d
     return instrument == &imk_tuned_gyro_instrument && !((const imk_tuned_gyro *)design)->captured;
 }
 
+/* The ball of a suspended gyro that 1 g, as in the tumble, puts on its stop: `imukit physics
+ * --sweep` warns of it. */
+static inline bool is_fallen(const imk_instrument *instrument, const void *design)
+{
+    return instrument == &imk_suspended_rotor_instrument &&
+           imk_suspended_rotor_touch_down(design) < 1.1 * 9.80665;
+}
+
 /* What a model says itself of the size of its errors. */
 static inline int saying_of(const imk_laboratory *laboratory, const imk_model *reduced,
                             double full_scale)
@@ -355,7 +364,9 @@ static inline int saying_of(const imk_laboratory *laboratory, const imk_model *r
     for (size_t i = 0; i < count; i++)
         if (fabs(figure[i].value) * acts_at(figure[i].key, full_scale) > 0.3 * full_scale)
             return SAYS_ERRORS;
-    return is_free_rotor(laboratory->instrument, laboratory->design) ? SAYS_OPEN : SAYS_NOTHING;
+    return is_free_rotor(laboratory->instrument, laboratory->design) ? SAYS_OPEN
+           : is_fallen(laboratory->instrument, laboratory->design)   ? SAYS_FALLEN
+                                                                     : SAYS_NOTHING;
 }
 
 static inline void compare(const imk_laboratory *laboratory, const imk_model *reduced,

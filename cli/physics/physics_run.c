@@ -15,7 +15,7 @@ static void suggest_level(const physics *p, imk_error *error)
     slow.level = IMK_LEVEL_SLOW;
     const double step = p->settings.instrument->step_length(p->settings.design, &slow);
     const size_t length = strlen(error->expected);
-    if (p->options->level == 0 && p->options->step == 0 &&
+    if (p->options->level != 1 && p->options->step == 0 &&
         p->settings.duration <= IMK_PHYSICS_STEPS * step)
         snprintf(error->expected + length, sizeof error->expected - length,
                  ", or add --level slow");
@@ -58,17 +58,26 @@ static int check(const physics *p)
     return -1;
 }
 
+static void warn(const imk_findings *findings)
+{
+    char text[300];
+    for (size_t i = 0; i < findings->count; i++) {
+        const imk_finding *f = &findings->item[i];
+        imk_finding_text(f, text, sizeof text);
+        if (f->level == IMK_FINDING_WARNING)
+            command_warn(imk_finding_code(f), "%s", text);
+    }
+}
+
 /* Errors are reported with the names of the options. */
 static int tell(const physics *p, const imk_physics_log *run, imk_status status, imk_error *error)
 {
     const imk_finding *failure = run ? imk_findings_failure(&run->findings) : NULL;
     char text[300];
-    for (size_t i = 0; run && i < run->findings.count; i++) {
-        const imk_finding *f = &run->findings.item[i];
-        imk_finding_text(f, text, sizeof text);
-        if (f->level == IMK_FINDING_WARNING)
-            command_warn(imk_finding_code(f), "%s", text);
-    }
+    if (run)
+        warn(&run->findings);
+    if (failure)
+        imk_finding_text(failure, text, sizeof text);
     if (status == IMK_OK)
         return -1;
     if (!failure)
@@ -111,5 +120,7 @@ int physics_sweep_make(const physics *p, imk_physics_sweep **sweep)
         job.job.progress = NULL;
     const imk_status status = imk_physics_sweep_run(&p->settings, &job.job, sweep, &error);
     threaded_job_end(&job);
+    if (status == IMK_OK)
+        warn(&(*sweep)->findings);
     return status == IMK_OK ? -1 : physics_refused(p, &error);
 }

@@ -9,8 +9,8 @@
 
 enum { DESIGNS = 50, SEED = 2 };
 
-/* A sweep of more internal steps is left out here. */
-static const double steps_allowed = 1e5;
+/* One design in three is swept here, and none whose sweep takes more internal steps. */
+static const double steps_allowed = 2e5;
 
 /* A figure that differs from its closed form, and neither smaller inputs nor more time nor the
  * model itself says why. */
@@ -27,7 +27,8 @@ static int try_moved(const imk_instrument *instrument, int move, void *design)
     for (int number = 0; number < count; number++) {
         design_outcome outcome;
         random_design(instrument, move, number, SEED, design);
-        try_design(instrument, design, check_skips((size_t)number, 2) ? 0.0 : steps_allowed,
+        try_design(instrument, design,
+                   number % 3 != 0 || check_skips((size_t)number, 2) ? 0.0 : steps_allowed,
                    &outcome);
         refused += outcome.end == DESIGN_REFUSED;
         swept += outcome.end == DESIGN_SWEPT;
@@ -52,7 +53,7 @@ static void moved_designs_are_refused_in_words_or_agree(void **state)
             swept += try_moved(instrument, move, design);
         free(design);
     }
-    CHECK_BELOW(check_quick() ? 30 : 200, swept);
+    CHECK_BELOW(check_quick() ? 30 : 100, swept);
 }
 
 /* Their readings would be at the end of the range at rest, where no figure of the error model
