@@ -149,6 +149,12 @@ static inline void imki_temperature_range(imk_temperature_polynomial *polynomial
 imk_status imki_check_bias(const imk_instrument *instrument, const void *design, const char *field,
                            imk_error *error);
 
+/* A design whose fixed torque is not below the largest that its parts balance is refused: its
+ * torque, unless they do not balance the torque of the default design (usual) either; then the
+ * `field` to whose value the largest is proportional. */
+imk_status imki_check_torque(double torque, double usual, double largest, const char *field,
+                             double value, const char *expected, imk_error *error);
+
 /* A damping as a model can have it: beyond 50 the slower of the two roots is all that is left, a
  * first-order filter (0); below 0.05 the nearest. */
 static inline double imki_model_damping(double damping)

@@ -33,6 +33,18 @@ imk_status imki_check_bias(const imk_instrument *instrument, const void *design,
                          "of the range without any input");
 }
 
+imk_status imki_check_torque(double torque, double usual, double largest, const char *field,
+                             double value, const char *expected, imk_error *error)
+{
+    const double fixed = fabs(torque);
+    if (fixed < largest)
+        return IMK_OK;
+    if (fabs(usual) < largest)
+        return imki_conflict(error, "torque.fixed", fixed, largest, expected);
+    const double needed = largest > 0.0 ? value * (fixed / largest) : (double)INFINITY;
+    return imki_conflict(error, field, value, needed, expected);
+}
+
 double imki_reduction_offset(imk_triad *triad, double u, double per_kelvin)
 {
     double *const s = &triad->scale_factor.fixed.value[0];

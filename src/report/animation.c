@@ -30,6 +30,10 @@ enum {
 
 static const char blue[] = "#0072b2", orange[] = "#d55e00"; /* of the palette of figures */
 
+/* As in figures: values with a smaller relative or absolute difference are drawn as equal, and the
+ * largest number of an axis keeps its length finite. */
+static const double least_part = 1e-9, least_span = 1e-290, largest = 1e300;
+
 typedef struct axis {
     double low, high; /* of the data, with some air */
     int begin, end;   /* on the drawing */
@@ -52,15 +56,20 @@ static axis axis_make(const double *values, size_t count, int begin, int end)
         a.low = fmin(a.low, values[i]);
         a.high = fmax(a.high, values[i]);
     }
-    const double air = a.high > a.low ? 0.05 * (a.high - a.low) : fmax(0.1 * fabs(a.high), 0.1);
-    a.low -= air;
-    a.high += air;
+    a.low = fmin(fmax(a.low, -largest), largest);
+    a.high = fmin(fmax(a.high, -largest), largest);
+    const double span = a.high - a.low;
+    const double least = fmax(least_span, least_part * fmax(fabs(a.low), fabs(a.high)));
+    const double air = span > 0 ? 0.05 * span : fmax(0.1 * fabs(a.high), 0.1);
+    a.low -= fmax(air, 0.5 * (least - span));
+    a.high += fmax(air, 0.5 * (least - span));
     return a;
 }
 
 static int place(const axis *a, double value)
 {
-    return (int)lround(a->begin + (value - a->low) / (a->high - a->low) * (a->end - a->begin));
+    const double part = fmin(fmax((value - a->low) / (a->high - a->low), 0), 1);
+    return (int)lround(a->begin + part * (a->end - a->begin));
 }
 
 /* Distance of ticks, 1, 2 or 5 times a power of ten: four to ten of them. */
@@ -71,32 +80,37 @@ static double tick_distance(const axis *a)
     return power * (digit < 2 ? 1 : digit < 5 ? 2 : 5);
 }
 
-/* "0.3", without the rounding error of a multiple of the distance. */
-static void put_number(imki_text *out, double value, double distance)
+/* "0.3", without the rounding error of a multiple of the distance; with more than six digits if
+ * fewer do not part the ticks of this axis. */
+static void put_number(imki_text *out, const axis *a, double value, double distance)
 {
     char text[40];
-    snprintf(text, sizeof text, "%.6g", fabs(value) < 1e-6 * distance ? 0.0 : value);
+    const double most = fmax(fabs(a->low), fabs(a->high));
+    const int digits = (int)(floor(log10(most)) - floor(log10(distance))) + 1;
+    snprintf(text, sizeof text, "%.*g", digits > 6 ? digits : 6,
+             fabs(value) < 1e-6 * distance ? 0.0 : value);
     for (char *c = text; *c; c++)
         imki_text_put_char(out, *c == ',' ? '.' : *c);
 }
 
+/* Ticks are counted by whole numbers: the sum of a value and a distance may be the same value. */
 static void put_axes(imki_text *out, const drawing *d)
 {
     const double dx = tick_distance(&d->x), dy = tick_distance(&d->y);
-    for (double t = ceil(d->x.low / dx) * dx; t <= d->x.high; t += dx) {
-        const int at = place(&d->x, t);
+    for (double n = ceil(d->x.low / dx); n <= floor(d->x.high / dx); n++) {
+        const int at = place(&d->x, n * dx);
         imki_text_add(out, "<path class=\"grid\" d=\"M%d %dV%d\"/><text x=\"%d\" y=\"%d\">", at,
                       TOP, HEIGHT - BOTTOM, at, HEIGHT - BOTTOM + 190);
-        put_number(out, t, dx);
+        put_number(out, &d->x, n * dx, dx);
         imki_text_put(out, "</text>\n");
     }
-    for (double t = ceil(d->y.low / dy) * dy; t <= d->y.high; t += dy) {
-        const int at = place(&d->y, t);
+    for (double n = ceil(d->y.low / dy); n <= floor(d->y.high / dy); n++) {
+        const int at = place(&d->y, n * dy);
         imki_text_add(out,
                       "<path class=\"grid\" d=\"M%d %dH%d\"/>"
                       "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">",
                       LEFT, at, WIDTH - RIGHT, LEFT - 70, at + 40);
-        put_number(out, t, dy);
+        put_number(out, &d->y, n * dy, dy);
         imki_text_put(out, "</text>\n");
     }
     imki_text_add(out,

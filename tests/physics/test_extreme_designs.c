@@ -142,10 +142,46 @@ static void the_figure_and_its_parameter_are_named(void **unused)
     gyro.stiffness = 8e-302;
     CHECK_STATUS(imk_rate_gyro_validate(&gyro, &error), IMK_ERROR_CONFLICT);
     assert_string_equal(error.field, "spring.stiffness");
+    assert_non_null(strstr(error.expected, "a fixed torque that the spring balances"));
+    /* torque over stop: 2e-7 N m at 3 deg */
+    CHECK_CLOSE(error.limit, 2e-7 / gyro.stop, 1e-18);
+    gyro.torque.fixed = 0.0; /* which any spring balances */
+    CHECK_STATUS(imk_rate_gyro_validate(&gyro, &error), IMK_ERROR_CONFLICT);
+    assert_string_equal(error.field, "spring.stiffness");
     assert_non_null(strstr(error.expected, "nonlinearity.k2 "));
     /* in the unit of the table, without a limit that there is none */
     imk_design_error_in_units(&imk_rate_gyro_instrument, &gyro, &error);
     assert_string_equal(error.found, "\"8e-302 N*m/rad\" is in conflict");
+}
+
+/* A torque that the rest of the design does not balance is named itself; otherwise what is too weak
+ * for the torque of the default design. */
+static void what_does_not_balance_the_torque_is_named(void **unused)
+{
+    (void)unused;
+    imk_error error = {0};
+    imk_rate_gyro gyro = imk_rate_gyro_default();
+    gyro.torque.fixed = -1.01 * gyro.stiffness * gyro.stop;
+    CHECK_STATUS(imk_rate_gyro_validate(&gyro, &error), IMK_ERROR_CONFLICT);
+    assert_string_equal(error.field, "torque.fixed");
+    CHECK_CLOSE(error.limit, gyro.stiffness * gyro.stop, 1e-15);
+    gyro = imk_rate_gyro_default();
+    gyro.stop = 0.5 * gyro.torque.fixed / gyro.stiffness;
+    CHECK_STATUS(imk_rate_gyro_validate(&gyro, &error), IMK_ERROR_CONFLICT);
+    assert_string_equal(error.field, "gimbal.stop");
+    CHECK_CLOSE(error.limit, 2.0 * gyro.stop, 1e-18);
+    imk_tuned_gyro tuned = imk_tuned_gyro_default();
+    tuned.torquer_limit = 0.5 * tuned.torque.fixed;
+    CHECK_STATUS(imk_tuned_gyro_validate(&tuned, &error), IMK_ERROR_CONFLICT);
+    assert_string_equal(error.field, "torquer.limit");
+    tuned = imk_tuned_gyro_default();
+    tuned.torque.fixed = 2.0 * tuned.torquer_limit;
+    CHECK_STATUS(imk_tuned_gyro_validate(&tuned, &error), IMK_ERROR_CONFLICT);
+    assert_string_equal(error.field, "torque.fixed");
+    imk_rate_integrating_gyro floated = imk_rate_integrating_gyro_default();
+    floated.torquer_limit = 0.5 * floated.torque.fixed;
+    CHECK_STATUS(imk_rate_integrating_gyro_validate(&floated, &error), IMK_ERROR_CONFLICT);
+    assert_string_equal(error.field, "torquer.limit");
 }
 
 /* 32 steps to a cycle of the captured pendulum, whose inertia is a 1e-12th: a millionth of the
@@ -219,6 +255,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_parameter_is_extreme),
         cmocka_unit_test(the_figure_and_its_parameter_are_named),
+        cmocka_unit_test(what_does_not_balance_the_torque_is_named),
         cmocka_unit_test(too_many_steps_are_refused),
         cmocka_unit_test(a_fast_turn_is_counted),
     };

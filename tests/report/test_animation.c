@@ -138,6 +138,53 @@ static void test_long_path(void **state)
     free(long_y);
 }
 
+static int count_of(const char *text, const char *part)
+{
+    int count = 0;
+    for (const char *at = strstr(text, part); at; at = strstr(at + 1, part))
+        count++;
+    return count;
+}
+
+/* A distance of ticks that no sum with the values can show (1 + 1e-17 is 1), and lengths that are
+ * not finite or not normal numbers: 4 to 11 ticks for each axis, at numbers. */
+static void test_every_range_has_few_ticks(void **state)
+{
+    (void)state;
+    const double next = nextafter(1.0, 2.0), much = 1.7e308, little = 5e-324;
+    const double ranges[][2] = {
+        {1.0, next},   {-1.0, -next},    {1e300, 1e300 * next}, {-much, much},     {much, much},
+        {0.0, little}, {1e-300, 2e-300}, {1.0, 1.0 + 1e-12},    {5.0, 5.0 + 2e-9}, {-1e-3, 1e-3}};
+    for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
+        double values[POINTS];
+        for (int k = 0; k < POINTS; k++)
+            values[k] = ranges[i][k % 2];
+        for (int turned = 0; turned <= 1; turned++) {
+            imk_animation animation = line();
+            animation.x = turned ? values : x;
+            animation.y = turned ? y : values;
+            char *svg = drawn(&animation);
+            assert_in_range(count_of(svg, "class=\"grid\""), 8, 22);
+            assert_null(strstr(svg, "nan"));
+            assert_null(strstr(svg, "inf"));
+            free(svg);
+        }
+    }
+}
+
+/* 1 to 1.00000001 with a twentieth of air: ticks 2e-9 apart have ten digits each. */
+static void test_ticks_of_a_narrow_range_differ(void **state)
+{
+    (void)state;
+    const double narrow[POINTS] = {1.0, 1.0, 1.0, 1.0 + 5e-9, 1.0 + 1e-8};
+    imk_animation animation = line();
+    animation.x = narrow;
+    char *svg = drawn(&animation);
+    assert_non_null(strstr(svg, ">1.000000002</text>"));
+    assert_non_null(strstr(svg, ">1.000000008</text>"));
+    free(svg);
+}
+
 static void test_refusals(void **state)
 {
     (void)state;
@@ -185,9 +232,14 @@ static void test_page(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_walker_keeps_time),  cmocka_unit_test(test_hops),
-        cmocka_unit_test(test_text_and_stillness), cmocka_unit_test(test_long_path),
-        cmocka_unit_test(test_refusals),           cmocka_unit_test(test_page),
+        cmocka_unit_test(test_walker_keeps_time),
+        cmocka_unit_test(test_hops),
+        cmocka_unit_test(test_text_and_stillness),
+        cmocka_unit_test(test_long_path),
+        cmocka_unit_test(test_every_range_has_few_ticks),
+        cmocka_unit_test(test_ticks_of_a_narrow_range_differ),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_page),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -68,11 +68,12 @@ static imk_status check(const void *given, imk_error *error)
     if (!(softening < imki_rate_gyro_stiffness(d)))
         return imki_conflict(error, "spring.stiffness", d->stiffness, softening,
                              "a spring that holds against the anisoinertia");
-    const double torque = fabs(d->torque.fixed), largest = imki_rate_gyro_stiffness(d) * d->stop;
-    if (!(torque < largest))
-        return imki_conflict(error, "torque.fixed", torque, largest,
-                             "a torque that the spring balances before the stop");
-    return IMK_OK;
+    const imk_rate_gyro usual = imk_rate_gyro_default();
+    const bool narrow = !(usual.torque.fixed < imki_rate_gyro_stiffness(&usual) * d->stop);
+    return imki_check_torque(
+        d->torque.fixed, usual.torque.fixed, imki_rate_gyro_stiffness(d) * d->stop,
+        narrow ? "gimbal.stop" : "spring.stiffness", narrow ? d->stop : d->stiffness,
+        "a fixed torque that the spring balances before the stop", error);
 }
 
 /* ---- description ----------------------------------------------------------------------------- */

@@ -85,11 +85,12 @@ static imk_status check(const void *given, imk_error *error)
         return imki_conflict(error, "loop.frequency", d->loop_frequency, highest,
                              "a loop slow enough for the lag I/C of the float");
     }
-    const double torque = fabs(d->torque.fixed);
-    if (d->rebalance != IMK_REBALANCE_OPEN && !(torque < d->torquer_limit))
-        return imki_conflict(error, "torque.fixed", torque, d->torquer_limit,
-                             "a torque below the largest of the torquer, which balances it");
-    return IMK_OK;
+    if (d->rebalance == IMK_REBALANCE_OPEN)
+        return IMK_OK;
+    return imki_check_torque(d->torque.fixed, imk_rate_integrating_gyro_default().torque.fixed,
+                             d->torquer_limit, "torquer.limit", d->torquer_limit,
+                             "a fixed torque below the largest of the torquer, which balances it",
+                             error);
 }
 
 /* ---- description ----------------------------------------------------------------------------- */

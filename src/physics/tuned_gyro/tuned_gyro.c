@@ -125,11 +125,12 @@ static imk_status check(const void *given, imk_error *error)
             error, "loop.frequency", d->loop_frequency, d->loop_filter,
             "a loop that excites neither itself nor the nutation: lower its frequency, and put its "
             "filter between this frequency and the nutation");
-    const double torque = fabs(d->torque.fixed);
-    if (d->captured && !(torque < d->torquer_limit))
-        return imki_conflict(error, "torque.fixed", torque, d->torquer_limit,
-                             "a torque below the largest of the torquers, which balance it");
-    return IMK_OK;
+    if (!d->captured)
+        return IMK_OK;
+    return imki_check_torque(d->torque.fixed, imk_tuned_gyro_default().torque.fixed,
+                             d->torquer_limit, "torquer.limit", d->torquer_limit,
+                             "a fixed torque below the largest of the torquers, which balance it",
+                             error);
 }
 
 /* ---- description ----------------------------------------------------------------------------- */
