@@ -625,7 +625,8 @@ static void test_bad_designs(void **state)
         check_message("$I physics d.yaml --reduce -o m.yaml", 1, texts[i][1]);
         assert_int_equal(sweep(), 1); /* the design itself */
     }
-    put("d.yaml", "imukit: 1\ninstrument: rate_gyro\nspring: {stiffness: 8e-302 N m/rad}\n");
+    put("d.yaml", "imukit: 1\ninstrument: rate_gyro\nspring: {stiffness: 8e-302 N m/rad}\n"
+                  "torque: {fixed: 0 N m}\n");
     check_message("$I physics d.yaml --reduce", 1,
                   E "d.yaml:3:21: spring.stiffness: \"8e-302 N*m/rad\" is in conflict; "
                     "nonlinearity.k2 of the error model is not finite with this value: bring it "
