@@ -27,6 +27,16 @@ static void compare(const imk_model *reduced, int sensor, imk_physics_sweep *s)
     s->gain_damping = t->damping.value[0];
 }
 
+/* At which bias and scale factor of the closed forms are stated; that of the settings where they do
+ * not depend on it. */
+static double reference_temperature(const imk_model *reduced, int sensor, double otherwise)
+{
+    const imk_triad *t = sensor == IMK_GYRO ? &reduced->gyro : &reduced->accel;
+    return t->bias.temperature.order > 0           ? t->bias.temperature.reference
+           : t->scale_factor.temperature.order > 0 ? t->scale_factor.temperature.reference
+                                                   : otherwise;
+}
+
 imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_job *job,
                                  imk_physics_sweep **sweep, imk_error *error)
 {
@@ -41,7 +51,6 @@ imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_jo
     settings.instrument = s->instrument;
     settings.design = s->design;
     settings.physics = s->physics;
-    settings.surroundings.temperature = s->input.exposure.temperature;
     settings.longest = s->duration > 0 ? s->duration : 0;
     settings.quick = s->quick;
     settings.progress = tell;
@@ -54,11 +63,14 @@ imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_jo
     imk_model *reduced = imki_arena_take(&arena, sizeof *reduced);
     imk_physics_sweep *made = imki_resize(&job->allocator, NULL, sizeof *made);
     status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    if (workspace && reduced && made)
+    if (workspace && reduced && made) {
+        imk_instrument_reduce(s->instrument, s->design, reduced);
+        settings.surroundings.temperature = reference_temperature(
+            reduced, s->instrument->sensor, s->input.exposure.temperature);
         status =
             imk_laboratory_run(&settings, job->executor, &made->result, workspace, size, error);
+    }
     if (status == IMK_OK) {
-        imk_instrument_reduce(s->instrument, s->design, reduced);
         made->allocator = job->allocator;
         compare(reduced, s->instrument->sensor, made);
     } else {

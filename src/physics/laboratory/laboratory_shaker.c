@@ -63,11 +63,13 @@ static imk_laboratory_response measure_sine(const pair *p, double frequency, siz
     double phase = imk_atan2(out[0], out[1]) - imk_atan2(in[0], in[1]);
     phase -= 2.0 * IMKI_PI * floor(phase / (2.0 * IMKI_PI) + 0.5);
     const double ratio = (out[0] * out[0] + out[1] * out[1]) / (in[0] * in[0] + in[1] * in[1]);
-    return (imk_laboratory_response){frequency, sqrt(ratio), phase};
+    /* an input that is held and a mean each have sin(x)/x of the amplitude, x half of the angle */
+    const double held = imk_sin(0.5 * angle) / (0.5 * angle);
+    return (imk_laboratory_response){frequency, sqrt(ratio) / (held * held), phase};
 }
 
-/* Samples to a cycle: as the sample rate gives, at least 64: holding the input and taking
- * the mean of the output then change the gain by less than 1e-3. */
+/* Samples to a cycle: as the sample rate gives, at least 64: what holding the input and taking the
+ * mean of the output change in the gain, and is taken out, is then less than 1e-3. */
 static size_t samples_per_cycle(const imk_laboratory *laboratory, double frequency)
 {
     const double count = floor(laboratory->physics.rate / frequency + 0.5);

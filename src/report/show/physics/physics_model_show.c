@@ -45,11 +45,6 @@ static size_t all_figures(const imk_model *model, int sensor, imk_laboratory_fig
     const imk_triad *t = gyro ? &model->gyro : &model->accel;
     const char *si = gyro ? "rad/s" : "m/s^2", *small = gyro ? "deg/h" : "ug";
     size_t n = imk_laboratory_figures(model, sensor, figures);
-    n = add(figures, n, "noise.reading_noise", gyro ? "rad" : "m/s", gyro ? "arcsec" : "mm/s",
-            &t->noise.reading_noise);
-    n = add(figures, n, gyro ? "noise.angle_white" : "noise.velocity_white",
-            gyro ? "rad/sqrt(Hz)" : "m/s/sqrt(Hz)", gyro ? "arcsec/sqrt(Hz)" : "m/s/sqrt(Hz)",
-            &t->noise.angle_white);
     n = add(figures, n, "bias.repeatability", si, small, &t->bias.repeatability);
     n = add(figures, n, "bias.warm_up_amplitude", si, small, &t->bias.warm_up_amplitude);
     n = add(figures, n, "bias.hysteresis", si, small, &t->bias.hysteresis);
