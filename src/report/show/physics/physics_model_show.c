@@ -103,14 +103,16 @@ static bool says_something(const imk_physics_sweep *l, size_t i)
            l->verdict[i] == IMK_LABORATORY_CLOSE;
 }
 
-/* Terms that are zero in the closed forms, by their verdict. */
+/* Terms that are zero in the closed forms, by their verdict; of those that were not measured, the
+ * ones whose experiment gave no number. */
 static void show_zeros(const imk_physics_sweep *l, imk_laboratory_verdict verdict,
                        const char *words, imk_result *result)
 {
     char line[1200];
     size_t length = 0;
     for (size_t i = 0; i < l->count && length < sizeof line; i++)
-        if (!says_something(l, i) && l->verdict[i] == verdict)
+        if (!says_something(l, i) && l->verdict[i] == verdict &&
+            (verdict != IMK_LABORATORY_NOT_MEASURED || l->result.effort[i].seconds > 0))
             length += (size_t)snprintf(line + length, sizeof line - length, "%s%s",
                                        length > 0 ? ", " : "", l->computed[i].key);
     if (length > 0)
@@ -138,6 +140,8 @@ void imki_show_sweep(const imk_physics_sweep *l, imk_result *result)
     show_zeros(l, IMK_LABORATORY_AGREES, "Zero in both", result);
     show_zeros(l, IMK_LABORATORY_CANNOT_TELL,
                "Zero in the closed forms, not told by the experiment", result);
+    show_zeros(l, IMK_LABORATORY_NOT_MEASURED,
+               "Zero in the closed forms, and the readings of the experiment are no numbers", result);
 }
 
 static void show_points(const imk_laboratory_result *r, const char *si, imk_result *result)
