@@ -135,7 +135,9 @@ typedef struct imk_physics_sweep {
     imk_allocator allocator; /**< allocator of this structure */
 } imk_physics_sweep;
 
-/** Find the error model by experiments (laboratory.h) in the surroundings that the settings state.
+/** Find the error model by experiments (laboratory.h), at the reference temperature of the error
+ *  model. The input of the settings is not used, except for its temperature where the error model
+ *  does not depend on it.
  *  @param sweep  free it with imk_physics_sweep_free(); NULL after a failure
  *  @return errors of imk_laboratory_run(); IMK_ERROR_MEMORY */
 IMK_API imk_status imk_physics_sweep_run(const imk_physics_log_settings *settings,

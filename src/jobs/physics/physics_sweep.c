@@ -54,6 +54,16 @@ static void tell_event(const imk_physics_log_settings *s, void *state, imk_findi
         imki_find(findings, IMK_FINDING_WARNING, event.code, event.name, event.count, event.number);
 }
 
+/* At which bias and scale factor of the closed forms are stated; that of the settings where they do
+ * not depend on it. */
+static double reference_temperature(const imk_model *reduced, int sensor, double otherwise)
+{
+    const imk_triad *t = sensor == IMK_GYRO ? &reduced->gyro : &reduced->accel;
+    return t->bias.temperature.order > 0           ? t->bias.temperature.reference
+           : t->scale_factor.temperature.order > 0 ? t->scale_factor.temperature.reference
+                                                   : otherwise;
+}
+
 imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_job *job,
                                  imk_physics_sweep **sweep, imk_error *error)
 {
@@ -68,7 +78,6 @@ imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_jo
     settings.instrument = s->instrument;
     settings.design = s->design;
     settings.physics = s->physics;
-    settings.surroundings.temperature = s->input.exposure.temperature;
     settings.longest = s->duration > 0 ? s->duration : 0;
     settings.quick = s->quick;
     settings.progress = tell;
@@ -86,11 +95,13 @@ imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_jo
         made->findings = (imk_findings){0};
         tell_event(s, workspace, &made->findings);
         settings.tumble = made->findings.count == 0;
+        imk_instrument_reduce(s->instrument, s->design, reduced);
+        settings.surroundings.temperature =
+            reference_temperature(reduced, s->instrument->sensor, s->input.exposure.temperature);
         status =
             imk_laboratory_run(&settings, job->executor, &made->result, workspace, size, error);
     }
     if (status == IMK_OK) {
-        imk_instrument_reduce(s->instrument, s->design, reduced);
         made->allocator = job->allocator;
         compare(reduced, s->instrument->sensor, made);
     } else {

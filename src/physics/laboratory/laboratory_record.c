@@ -217,6 +217,9 @@ static spectrum stated(const imki_bench *b)
     s.size[READING] =
         hypot(s.size[READING], b->computed[imki_figure_of(b, readings[sensor][1])].value);
     s.density = b->computed[imki_figure_of(b, readings[sensor][2])].value;
+    /* errors of successive readings are independent where a sample is longer than the response */
+    if ((s.size[READING] > 0.0 || s.density > 0.0) && b->bandwidth > 0.0)
+        s.rate /= fmax(1.0, ceil(s.rate / b->bandwidth));
     return s;
 }
 

@@ -38,6 +38,13 @@ static double step(const pair *p, double begin, double end, double dt, double *m
     return outputs[1][0] - outputs[0][0];
 }
 
+/* A hundred periods of the bandwidth are enough where that is known: what decays more slowly is
+ * small in the response to a sine. */
+static double settling(const imki_bench *bench)
+{
+    return bench->bandwidth > 0.0 ? fmin(bench->settle, 100.0 / bench->bandwidth) : bench->settle;
+}
+
 /* Correlation of change and input with the cosine and the sine of the input's phase, over whole
  * cycles. The mean of a sine over a sample is what the instrument is exposed to. */
 static imk_laboratory_response measure_sine(const pair *p, double frequency, size_t per_cycle)
@@ -45,7 +52,7 @@ static imk_laboratory_response measure_sine(const pair *p, double frequency, siz
     const imk_laboratory *l = p->bench->laboratory;
     const double angle = 2.0 * IMKI_PI / (double)per_cycle;
     const double dt = 1.0 / (frequency * (double)per_cycle);
-    const size_t settle = imki_samples_in(p->bench->settle + 4.0 / frequency, 1.0 / dt);
+    const size_t settle = imki_samples_in(settling(p->bench) + 4.0 / frequency, 1.0 / dt);
     const size_t wanted = imki_samples_in(l->dwell, frequency);
     const size_t cycles = wanted < 4 ? 4 : wanted;
     double out[2] = {0.0, 0.0}, in[2] = {0.0, 0.0}, mean;
@@ -63,11 +70,13 @@ static imk_laboratory_response measure_sine(const pair *p, double frequency, siz
     double phase = imk_atan2(out[0], out[1]) - imk_atan2(in[0], in[1]);
     phase -= 2.0 * IMKI_PI * floor(phase / (2.0 * IMKI_PI) + 0.5);
     const double ratio = (out[0] * out[0] + out[1] * out[1]) / (in[0] * in[0] + in[1] * in[1]);
-    return (imk_laboratory_response){frequency, sqrt(ratio), phase};
+    /* an input that is held and a mean each have sin(x)/x of the amplitude, x half of the angle */
+    const double held = imk_sin(0.5 * angle) / (0.5 * angle);
+    return (imk_laboratory_response){frequency, sqrt(ratio) / (held * held), phase};
 }
 
-/* Samples to a cycle: as the sample rate gives, at least 64: holding the input and taking
- * the mean of the output then change the gain by less than 1e-3. */
+/* Samples to a cycle: as the sample rate gives, at least 64: what holding the input and taking the
+ * mean of the output change in the gain, and is taken out, is then less than 1e-3. */
 static size_t samples_per_cycle(const imk_laboratory *laboratory, double frequency)
 {
     const double count = floor(laboratory->physics.rate / frequency + 0.5);
@@ -167,7 +176,7 @@ void imki_shaker(imki_bench *bench)
         return;
     for (int i = 0; i < count; i++) {
         response[i].frequency = between(lowest, highest, count > 1 ? i / (count - 1.0) : 0.0);
-        seconds += bench->settle + 8.0 / response[i].frequency;
+        seconds += settling(bench) + 8.0 / response[i].frequency;
     }
     imk_execute(bench->executor, (size_t)count, measure, &(shaking){bench, response});
     for (int i = 0; i < count; i++)

@@ -45,11 +45,6 @@ static size_t all_figures(const imk_model *model, int sensor, imk_laboratory_fig
     const imk_triad *t = gyro ? &model->gyro : &model->accel;
     const char *si = gyro ? "rad/s" : "m/s^2", *small = gyro ? "deg/h" : "ug";
     size_t n = imk_laboratory_figures(model, sensor, figures);
-    n = add(figures, n, "noise.reading_noise", gyro ? "rad" : "m/s", gyro ? "arcsec" : "mm/s",
-            &t->noise.reading_noise);
-    n = add(figures, n, gyro ? "noise.angle_white" : "noise.velocity_white",
-            gyro ? "rad/sqrt(Hz)" : "m/s/sqrt(Hz)", gyro ? "arcsec/sqrt(Hz)" : "m/s/sqrt(Hz)",
-            &t->noise.angle_white);
     n = add(figures, n, "bias.repeatability", si, small, &t->bias.repeatability);
     n = add(figures, n, "bias.warm_up_amplitude", si, small, &t->bias.warm_up_amplitude);
     n = add(figures, n, "bias.hysteresis", si, small, &t->bias.hysteresis);
@@ -108,14 +103,16 @@ static bool says_something(const imk_physics_sweep *l, size_t i)
            l->verdict[i] == IMK_LABORATORY_CLOSE;
 }
 
-/* Terms that are zero in the closed forms, by their verdict. */
+/* Terms that are zero in the closed forms, by their verdict; of those that were not measured, the
+ * ones whose experiment gave no number. */
 static void show_zeros(const imk_physics_sweep *l, imk_laboratory_verdict verdict,
                        const char *words, imk_result *result)
 {
     char line[1200];
     size_t length = 0;
     for (size_t i = 0; i < l->count && length < sizeof line; i++)
-        if (!says_something(l, i) && l->verdict[i] == verdict)
+        if (!says_something(l, i) && l->verdict[i] == verdict &&
+            (verdict != IMK_LABORATORY_NOT_MEASURED || l->result.effort[i].seconds > 0))
             length += (size_t)snprintf(line + length, sizeof line - length, "%s%s",
                                        length > 0 ? ", " : "", l->computed[i].key);
     if (length > 0)
@@ -143,6 +140,8 @@ void imki_show_sweep(const imk_physics_sweep *l, imk_result *result)
     show_zeros(l, IMK_LABORATORY_AGREES, "Zero in both", result);
     show_zeros(l, IMK_LABORATORY_CANNOT_TELL,
                "Zero in the closed forms, not told by the experiment", result);
+    show_zeros(l, IMK_LABORATORY_NOT_MEASURED,
+               "Zero in the closed forms, and the readings of the experiment are no numbers", result);
 }
 
 static void show_points(const imk_laboratory_result *r, const char *si, imk_result *result)
