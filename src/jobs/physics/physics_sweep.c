@@ -65,8 +65,8 @@ imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_jo
     status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (workspace && reduced && made) {
         imk_instrument_reduce(s->instrument, s->design, reduced);
-        settings.surroundings.temperature = reference_temperature(
-            reduced, s->instrument->sensor, s->input.exposure.temperature);
+        settings.surroundings.temperature =
+            reference_temperature(reduced, s->instrument->sensor, s->input.exposure.temperature);
         status =
             imk_laboratory_run(&settings, job->executor, &made->result, workspace, size, error);
     }
