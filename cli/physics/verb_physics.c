@@ -35,8 +35,9 @@ static const option input_option_table[] = {
     {"sine", OPTION_QUANTITY, AT(sine), .value = "FREQUENCY", .unit = "Hz",
      .help = "frequency of a sine; the given rate or force is its amplitude"},
     {"temperature", OPTION_QUANTITY, AT(temperature), .letter = 't', .value = "TEMPERATURE",
-     .unit = "degC", .help = "temperature of the instrument; default 20degC. --sweep is at the reference "
-                            "temperature of the error model"},
+     .unit = "degC",
+     .help = "temperature of the instrument; default 20degC. --sweep is at the reference "
+             "temperature of the error model"},
     {"temperature-rate", OPTION_QUANTITY, AT(temperature_rate), .value = "RATE", .unit = "degC/min",
      .help = "rate at which the temperature changes from --temperature on"},
 };

@@ -164,7 +164,7 @@ static double cycles_needed(const imki_bench *bench, const running *r, size_t co
     double sigma = fmax(sigma_of_mean(r->x_square[column], r->count), rounding);
     /* residuals that are noise become smaller in the mean over cycles */
     const double noise = sqrt(r->misfit_square[column]) / r->count;
-    if (misfit > wanted && misfit > 1.8 * noise && misfit > 2.0 * rounding)
+    if (misfit > wanted && misfit > 3.0 * noise && misfit > 2.0 * rounding)
         return (double)INFINITY;
     sigma = fmax(sigma, misfit);
     return sigma <= wanted ? r->count : r->count * (sigma / wanted) * (sigma / wanted);

@@ -109,20 +109,19 @@ static void measure(void *context, size_t item)
                          imki_samples_in(e->dwell, physics.rate), state);
 }
 
-/* Windows in which a step of full scale, at the highest temperature of the chamber, beside a run
- * without it, still differs from the last ones by more than 1e-6 of itself and their scatter. Both
- * are without noise, which would hide the end of a decay that a mean over cycles shows. */
-double imki_settling_time(imki_bench *bench)
+/* Windows in which a step of half of full scale, at the highest temperature of the chamber, beside
+ * a run without it, still differs from the last ones by more than 1e-6 of itself, or a hundredth of
+ * what it changes from run to run, and their scatter. */
+static double settling_time(imki_bench *bench, bool noise)
 {
     enum { WINDOWS = 40, LAST = 10 };
     static const double window = 0.1, small = 1e-6, warmer = 20.0; /* [s], [1], [K] */
     const imk_laboratory *l = bench->laboratory;
     imk_physics_settings physics = imki_cycle(bench, 0, false);
-    imki_trial trial[2] = {imki_trial_of(l, 0.0), imki_trial_of(l, bench->result->full_scale)};
+    imki_trial trial[2] = {imki_trial_of(l, 0.0),
+                           imki_trial_of(l, 0.5 * bench->result->full_scale)};
     double change[WINDOWS] = {0.0}, end = 0.0, scatter = 0.0;
-    if (l->settle >= 0.0)
-        return l->settle;
-    physics.noise = false;
+    physics.noise = noise && physics.noise;
     trial[1].exposure.temperature += l->temperature ? warmer : 0.0;
     for (size_t k = 0; k < 2; k++) {
         void *state = bench->states;
@@ -139,9 +138,19 @@ double imki_settling_time(imki_bench *bench)
     for (size_t i = WINDOWS - LAST; i < WINDOWS; i++) /* of noise, not of a drift */
         scatter = fmax(scatter, fabs(change[i] - change[i - 1]));
     size_t settled = WINDOWS - LAST;
-    while (settled > 0 && fabs(change[settled - 1] - end) <= small * fabs(end) + 3.0 * scatter)
+    const double run = hypot(bench->bias, bench->scale * bench->result->full_scale);
+    const double enough = fmax(small * fabs(end), 0.01 * run);
+    while (settled > 0 && fabs(change[settled - 1] - end) <= enough + 3.0 * scatter)
         settled--;
     return 2.0 * window * (double)(settled + 1); /* what noise hides here may show in a mean */
+}
+
+/* Noise would hide the end of a decay that a mean over cycles shows; and what it sets off has to
+ * settle too. */
+double imki_settling_time(imki_bench *bench)
+{
+    const double set = bench->laboratory->settle;
+    return set >= 0.0 ? set : fmax(settling_time(bench, false), settling_time(bench, true));
 }
 
 void imki_readings(imki_bench *bench, size_t first, size_t cycles, double *y)

@@ -141,7 +141,8 @@ void imki_show_sweep(const imk_physics_sweep *l, imk_result *result)
     show_zeros(l, IMK_LABORATORY_CANNOT_TELL,
                "Zero in the closed forms, not told by the experiment", result);
     show_zeros(l, IMK_LABORATORY_NOT_MEASURED,
-               "Zero in the closed forms, and the readings of the experiment are no numbers", result);
+               "Zero in the closed forms, and the readings of the experiment are no numbers",
+               result);
 }
 
 static void show_points(const imk_laboratory_result *r, const char *si, imk_result *result)
