@@ -130,8 +130,8 @@ typedef struct imk_physics_sweep {
     imk_laboratory_figure computed[IMK_LABORATORY_FIGURES_MAX], found[IMK_LABORATORY_FIGURES_MAX];
     imk_laboratory_verdict verdict[IMK_LABORATORY_FIGURES_MAX];
     double gain_bandwidth, gain_damping; /**< of the response by the closed forms [Hz], [1] */
-    imk_findings findings;   /**< what happens in the instrument at 1 g and is in no closed form: then
-                                there is no tumble */
+    imk_findings findings; /**< what happens in the instrument at 1 g and is in no closed form: then
+                              there is no tumble */
     imk_allocator allocator; /**< allocator of this structure */
 } imk_physics_sweep;
 
