@@ -118,7 +118,7 @@ static const imk_technology technologies[] = {
 
 static bool is_map(imk_grade_map map)
 {
-    return (int)map >= 0 && (int)map < IMK_GRADE_MAPS;
+    return (unsigned)map < IMK_GRADE_MAPS;
 }
 
 size_t imk_map_region_count(imk_grade_map map)

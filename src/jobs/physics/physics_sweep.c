@@ -7,6 +7,7 @@
 
 #include "imukit/readable.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -119,6 +120,16 @@ void imk_physics_sweep_free(imk_physics_sweep *sweep)
         imki_resize(&sweep->allocator, sweep, 0);
 }
 
+/* Up to whole days, hours or minutes, of which there are two or more. */
+static double rounded_up(double seconds)
+{
+    const double unit = seconds > 2 * 86400.0 ? 86400.0
+                        : seconds > 2 * 3600  ? 3600.0
+                        : seconds > 120       ? 60.0
+                                              : 1.0;
+    return seconds < 10 ? seconds : unit * ceil(seconds / unit);
+}
+
 const char *imk_physics_sweep_verdict(const imk_physics_sweep *sweep, size_t index, char *text,
                                       size_t size)
 {
@@ -130,7 +141,7 @@ const char *imk_physics_sweep_verdict(const imk_physics_sweep *sweep, size_t ind
     } else if (effort->limit) {
         snprintf(text, size, "%s: %s", word, effort->limit);
     } else {
-        imk_readable_duration(effort->needs, length, sizeof length);
+        imk_readable_duration(rounded_up(effort->needs), length, sizeof length);
         snprintf(text, size, "%s: needs %s", word, length);
     }
     return text;

@@ -182,6 +182,8 @@ static imk_status check_cavity(const imk_suspended_rotor *design, imk_error *err
  * ends of what is drawn. */
 #define NOISE_STEP 1e-6
 #define DRAWN 6.0
+/* A gyro's axis stays: faster than this bias and scale factor hold for a moment only [rad/s]. */
+#define FASTEST_DRIFT 0.01
 
 static imk_status check_torques(const imk_suspended_rotor *design, imk_error *error)
 {
@@ -196,6 +198,12 @@ static imk_status check_torques(const imk_suspended_rotor *design, imk_error *er
                             design->torque_noise / sqrt(NOISE_STEP));
     largest += 3.0 * fabs(design->torque_temperature) * IMKI_DESIGN_TEMPERATURE;
     const double most = LARGEST_PART * imk_suspended_rotor_momentum(design) * design->spin_rate;
+    static const char *const names[3] = {"torque.x", "torque.y", "torque.z"};
+    const double drift = FASTEST_DRIFT * imk_suspended_rotor_momentum(design);
+    for (int k = 0; k < 3; k++)
+        if (fabs(design->torque[k]) > drift)
+            return imki_conflict(error, names[k], design->torque[k], drift,
+                                 "a torque that turns the axis by at most 0.01 rad/s (2060 deg/h)");
     if (largest <= most)
         return IMK_OK;
     return imki_conflict(error, "spin.rate", design->spin_rate,

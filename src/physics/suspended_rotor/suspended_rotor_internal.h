@@ -108,11 +108,11 @@ typedef struct imki_suspended_state {
 
 double imki_suspended_step_length(const void *design, const imk_physics_settings *settings);
 /* Of a design that has been validated. */
-imk_status imki_suspended_init(const void *design, const imk_physics_settings *settings,
-                               void *state, imk_error *error);
-void imki_suspended_step(void *state, const imk_exposure *exposure, double *outputs);
-void imki_suspended_observe(const void *state, double *signals);
-bool imki_suspended_happened(const void *state, imk_instrument_event *event);
+imk_status imki_suspended_init(const void *given, const imk_physics_settings *settings,
+                               void *memory, imk_error *error);
+void imki_suspended_step(void *memory, const imk_exposure *exposure, double *out);
+void imki_suspended_observe(const void *memory, double *values);
+bool imki_suspended_happened(const void *memory, imk_instrument_event *event);
 
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
 void imki_suspended_rotor_reduce(const imk_suspended_rotor *design, imk_triad *gyro);

@@ -40,7 +40,7 @@ static void show_figure(const char *key, double value, const char *unit, imk_res
 
 void imk_show_build(const imk_device_build *build, imk_result *result)
 {
-    if (!imki_begin_object(result, "build", build != NULL))
+    if (!imki_begin_object(result, "build", build != NULL) || !build)
         return;
     if (imki_begin_object(result, "size", build->size[0] > 0)) {
         imk_result_numbers(result, "value", 3, build->size);

@@ -108,8 +108,8 @@ static void tell_kind(imk_verdict *v, const imk_identify_several *s, imk_reading
     static const char *const codes[] = {"readings_untold", "readings_alike", "readings_white",
                                         "readings_both"};
     static const char *const texts[] = {
-        ": the logs cannot tell reading noise, the same at each rate, from white noise of the "
-        "integral: rates farther apart, or longer logs at the highest and the lowest, tell.",
+        (": the logs cannot tell reading noise, the same at each rate, from white noise of the "
+         "integral: rates farther apart, or longer logs at the highest and the lowest, tell."),
         ": reading noise, the same at each rate.",
         ": white noise of the integral, whose readings scatter less at a lower rate.",
         ": both reading noise, the same at each rate, and white noise of the integral."};
