@@ -28,7 +28,10 @@ static const kind kinds[] = {
 
 static double power(double x, int n)
 {
-    return n == 0 ? 1.0 : x * power(x, n - 1);
+    double product = 1.0;
+    for (; n > 0; n--)
+        product *= x;
+    return product;
 }
 
 /* Noise that is not stated: what it does to a mean of 1 s, or, a random walk, in an hour. In units

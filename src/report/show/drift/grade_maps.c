@@ -100,6 +100,8 @@ static void add_panel(const imk_graded_several *r, int map, imk_figure_builder *
     imki_text note = {.bytes = NULL};
     imki_grade_note(r, map, &note);
     size_t size;
+    if (note.failed && figure)
+        figure->arena->failed = true;
     char *lines = imki_text_take(&note, &size);
     imk_figure_panel(figure, &(imk_panel){.title = m->title,
                                           .x_label = m->x.label,

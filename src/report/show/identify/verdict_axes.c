@@ -23,11 +23,12 @@ static const imk_log_column *column_of(const imk_identify_log *log, size_t chann
     return imk_even_record_column(&log->record, channel);
 }
 
-/* 0: absent, or kept from its value by outliers. */
+/* 0: absent, or kept from its value by outliers or by movements. */
 static double white_of(const imk_identify_log *log, size_t channel)
 {
     const imk_estimate *white = &log->result[channel].term[IMK_NOISE_WHITE];
-    return white->present && !log->screen[channel].heavy_tails ? white->value : 0;
+    const imk_screen *screen = &log->screen[channel];
+    return white->present && !screen->heavy_tails && screen->moved.count == 0 ? white->value : 0;
 }
 
 /* The three axes of a kind; false where there are not exactly these, or one has no white noise. */
