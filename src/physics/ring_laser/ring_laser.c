@@ -130,9 +130,24 @@ static const imk_view views[] = {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
+/* Beyond this a phase has no digits left [fringes/rad]; noise as large as the range of any gyro
+ * [rad/s /sqrt(Hz)]. */
+static const double most_fringes = 1e12, most_noise = 1.0;
+
 static imk_status check(const void *given, imk_error *error)
 {
     const imk_ring_laser *design = given;
+    const double fringes = imk_ring_laser_fringes_per_radian(design);
+    const double noise = imk_ring_laser_quantum_noise(design);
+    if (!(fringes <= most_fringes))
+        return imki_conflict(error, "cavity.perimeter", design->cavity.perimeter,
+                             design->cavity.perimeter * (most_fringes / fringes),
+                             "a ring of at most 1e12 fringes per radian");
+    if (!(noise <= most_noise))
+        return imki_conflict(error, "cavity.power", design->cavity.power,
+                             design->cavity.power * noise * noise,
+                             "more power, less loss or a larger ring: its quantum noise must be at "
+                             "most 1 rad/s/sqrt(Hz)");
     if (design->dither.rate > 0.0 && !(design->dither.rate > design->lock_in.rate))
         return imki_conflict(error, "dither.rate", design->dither.rate, design->lock_in.rate,
                              "a peak rate above lock_in.rate, or 0 for no dither");

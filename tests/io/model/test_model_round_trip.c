@@ -147,7 +147,8 @@ static void mutated_text_does_no_harm(void **state)
         free(written);
         imk_document_free(document);
     }
-    assert_true(accepted > (int)check_runs(MUTATIONS) / 50); /* digits and comments may change */
+    /* digits and comments may change; of few mutations all may hit something else */
+    assert_true(check_quick() || accepted > (int)check_runs(MUTATIONS) / 50);
     free(mutated);
     free(text);
 }
