@@ -41,6 +41,8 @@ static void test_each_verb(void **state)
         "identify wrong.csv",        "calibrate wrong.csv " POSES,
         "convert wrong.csv out.csv", "evaluate wrong.csv --motion plan.yaml"};
     for (size_t k = 0; k < sizeof verbs / sizeof verbs[0]; k++) {
+        if (check_skips(k, 3)) /* allan and calibrate stay */
+            continue;
         check_told("gyro_y/gryo_y", verbs[k], 0,
                    "an axis is missing, and gryo_y, which looks like gyro_y, is not used");
         check_told("gyro_/gyro_", verbs[k], 0, NULL);

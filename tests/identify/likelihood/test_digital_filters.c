@@ -51,7 +51,7 @@ static void test_white_noise(void **state)
     static const filter *const filters[] = {&moving_average_2, &moving_average_4, &binomial,
                                             &savitzky_golay};
     for (size_t i = 0; i < sizeof filters / sizeof filters[0]; i++)
-        if (!check_skips(i, 2))
+        if (!check_skips(i, 3))
             assert_true(count_held(filters[i]) >= RUNS - 1);
 }
 
