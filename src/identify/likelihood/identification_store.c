@@ -1,26 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* From what was identified on one channel to the terms and the evidence of a sensor model. */
 #include "imukit/identify.h"
+#include "model/model_internal.h"
 
 #include <math.h>
-#include <string.h>
-
-/* The interval of a key and instance, added when it is not there yet; NULL when the list is full.
- */
-static imk_interval *interval_of(imk_evidence *evidence, const char *key, int instance)
-{
-    for (int i = 0; i < evidence->interval_count; i++)
-        if (evidence->interval[i].instance == instance &&
-            strcmp(evidence->interval[i].key, key) == 0)
-            return &evidence->interval[i];
-    if (evidence->interval_count == IMK_INTERVALS_MAX)
-        return NULL;
-    imk_interval *added = &evidence->interval[evidence->interval_count++];
-    memset(added, 0, sizeof *added);
-    strncpy(added->key, key, sizeof added->key - 1);
-    added->instance = instance;
-    return added;
-}
 
 static void store(const imk_estimate *estimate, imk_axes *axes, imk_evidence *evidence,
                   const char *key, int instance, int axis)
@@ -29,7 +12,7 @@ static void store(const imk_estimate *estimate, imk_axes *axes, imk_evidence *ev
     axes->sigma[axis] = estimate->present ? estimate->sigma : 0;
     if (!estimate->present && !(estimate->upper > 0))
         return; /* nothing is known of it, such as of a ramp from several records */
-    imk_interval *interval = interval_of(evidence, key, instance);
+    imk_interval *interval = imki_evidence_interval(evidence, key, instance);
     if (interval) {
         interval->lower.value[axis] = estimate->lower;
         interval->upper.value[axis] = estimate->upper;
