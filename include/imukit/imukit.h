@@ -47,6 +47,7 @@
 #include "imukit/motion_script.h"
 #include "imukit/names.h"
 #include "imukit/navigate.h"
+#include "imukit/navigation_filter.h"
 #include "imukit/noise.h"
 #include "imukit/noise_map.h"
 #include "imukit/procedure.h"
@@ -57,6 +58,7 @@
 #include "imukit/samples.h"
 #include "imukit/simulate.h"
 #include "imukit/spectrum.h"
+#include "imukit/standstill.h"
 #include "imukit/static_detection.h"
 #include "imukit/status.h"
 #include "imukit/technology_map.h"
@@ -64,6 +66,5 @@
 #include "imukit/thermal.h"
 #include "imukit/units.h"
 #include "imukit/utf8.h"
-#include "imukit/zero_velocity.h"
 
 #endif
