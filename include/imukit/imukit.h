@@ -10,6 +10,7 @@
 #ifndef IMUKIT_IMUKIT_H
 #define IMUKIT_IMUKIT_H
 
+#include "imukit/aiding.h"
 #include "imukit/alignment.h"
 #include "imukit/allan.h"
 #include "imukit/allan_fit.h"

@@ -28,7 +28,7 @@ static size_t state_count(const imk_navigation_filter_settings *settings)
 size_t imk_navigation_filter_size(const imk_navigation_filter_settings *settings)
 {
     const size_t n = state_count(settings);
-    return sizeof(imk_navigation_filter) + (2 * n * n + 3 * n) * sizeof(double) +
+    return sizeof(imk_navigation_filter) + (2 * n * n + 9 * n) * sizeof(double) +
            IMKI_ALIGNMENT_SLACK;
 }
 
@@ -181,6 +181,8 @@ imk_status imk_navigation_filter_start(const imk_navigation_filter_settings *set
     f->covariance = (double *)(void *)(f + 1);
     f->scratch = f->covariance + f->states * f->states;
     f->cross = f->scratch + f->states * f->states;
+    f->h = f->cross + 3 * f->states;
+    f->gain = f->h + 3 * f->states;
     f->parts[IMKI_GYRO_PART] = settings->gyro.part_count;
     f->parts[IMKI_ACCEL_PART] = settings->accel.part_count;
     f->strapdown = imk_strapdown_start(start);
@@ -238,6 +240,17 @@ imk_navigation_state imk_navigation_filter_state(const imk_navigation_filter *fi
 imk_navigation_filter_counts imk_navigation_filter_counted(const imk_navigation_filter *filter)
 {
     return filter->counts;
+}
+
+imki_filter_gain imki_navigation_filter_gain(const imk_navigation_filter *f)
+{
+    return (imki_filter_gain){f->states, f->rows, f->h, f->gain};
+}
+
+const double *imki_navigation_filter_covariance(imk_navigation_filter *f)
+{
+    imki_navigation_filter_propagate(f);
+    return f->covariance;
 }
 
 /* Trace of the covariance of a sensor's biases, sums of their parts. */

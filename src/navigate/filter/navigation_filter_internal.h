@@ -31,6 +31,10 @@ struct imk_navigation_filter {
     double *cross;      /* states x 3: covariance of the errors with the gyros' noise since the
                            stand began, integrated [rad] */
     double *scratch;    /* states x states */
+    /* Of the last update that was accepted: */
+    size_t rows;
+    double *h;    /* rows x states */
+    double *gain; /* states x rows */
 };
 
 /* Second moments of a part's mean over an alignment of length `time` and of its value at the end.
@@ -39,6 +43,20 @@ typedef struct imki_part_moments {
     double mean, both, end;
 } imki_part_moments;
 imki_part_moments imki_bias_part_moments(const imk_bias_part *part, int axis, double time);
+
+/* What a part's values keep over a time h: e^{-h/T}, or 1. */
+double imki_bias_part_decay(const imk_bias_part *part, double h);
+
+/* The last update that was accepted: z = h x + v, and gain K, by which x <- K z was taken out of
+ * the state; no rows before the first. Valid until the next call of the filter. */
+typedef struct imki_filter_gain {
+    size_t states, rows;
+    const double *h;    /* rows x states */
+    const double *gain; /* states x rows */
+} imki_filter_gain;
+imki_filter_gain imki_navigation_filter_gain(const imk_navigation_filter *filter);
+/* The covariance of all states, states x states, brought up to the last sample. */
+const double *imki_navigation_filter_covariance(imk_navigation_filter *filter);
 
 /* Bring the covariance up to the last sample. */
 void imki_navigation_filter_propagate(imk_navigation_filter *filter);

@@ -134,13 +134,18 @@ typedef struct part_step {
     double decay, noise[3];
 } part_step;
 
+double imki_bias_part_decay(const imk_bias_part *part, double h)
+{
+    const double t = part->correlation_time;
+    return t > 0.0 ? 1.0 + imk_expm1(-h / t) : 1.0;
+}
+
 static part_step make_part(const imk_bias_part *part, double h)
 {
-    part_step step = {.decay = 1.0};
+    part_step step = {.decay = imki_bias_part_decay(part, h)};
     const double t = part->correlation_time;
     if (t > 0.0) {
         const double lost = -imk_expm1(-h / t);
-        step.decay = 1.0 - lost;
         for (int i = 0; i < 3; i++)
             step.noise[i] = part->sigma[i] * part->sigma[i] * lost * (2.0 - lost);
     } else {

@@ -120,7 +120,7 @@ bool imki_navigation_filter_measure(imk_navigation_filter *f, size_t rows, const
 {
     enum { STATES_MAX = ERRORS + 6 * IMK_BIAS_PARTS_MAX };
     const size_t n = f->states;
-    double ph[3 * STATES_MAX], gain[3 * STATES_MAX], x[STATES_MAX], s[3][3], inverse[3][3];
+    double ph[3 * STATES_MAX], x[STATES_MAX], s[3][3], inverse[3][3], *gain = f->gain;
     times_measured(f, f->covariance, rows, h, ph);
     for (size_t i = 0; i < n * rows && cross != NULL; i++)
         ph[i] += cross[i];
@@ -156,6 +156,8 @@ bool imki_navigation_filter_measure(imk_navigation_filter *f, size_t rows, const
             x[i] += gain[i * rows + r] * z[r];
         }
     }
+    f->rows = rows;
+    memcpy(f->h, h, rows * n * sizeof *h);
     update_covariance(f, rows, h, gain, noise, cross);
     take_out(f, x);
     return true;
