@@ -164,6 +164,7 @@ typedef struct imk_aid_reading {
                         zero velocity: 0 */
     double sigma[3]; /**< 1 sigma of w of this reading (aiding.h), on the axes of the kind; 0: that
                         of the aid; infinity: not measured */
+    bool compare;    /**< only compare: the innovation is that, and nothing changes */
 } imk_aid_reading;
 
 typedef enum imk_aid_verdict {

@@ -121,6 +121,7 @@ typedef struct imki_measurement {
     double h[3 * IMKI_FILTER_STATES_MAX]; /* rows x states */
     double z[3], noise[3][3];
     const double *cross;
+    bool compare; /* only */
 } imki_measurement;
 
 /* Tests a measurement, and takes the estimated errors out.

@@ -271,6 +271,8 @@ imk_aid_verdict imki_navigation_filter_measure(imk_navigation_filter *f, size_t 
     double test = solved ? squared(m, e.inverse) : (double)INFINITY;
     const bool fits = test <= f->limit[m->rows - 1];
     note_innovation(f, m, &e, test, fits);
+    if (m->compare)
+        return fits ? IMK_AID_USED : IMK_AID_REFUSED;
     if (!fits && !(solved && recovers(f, kind, m, &e, &test))) {
         refuse(f, counts);
         return IMK_AID_REFUSED;
