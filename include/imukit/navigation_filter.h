@@ -128,9 +128,11 @@ typedef struct imk_navigation_filter_counts {
     double chi_square; /**< sum of their squared normalised innovations; near `degrees` if the model
                           describes the unit */
     uint64_t pairs;    /**< degrees of freedom of accepted updates whose predecessor has as many */
-    double pair_sum;   /**< sum of the products of normalised innovations with those before; near 0
-                          within sqrt(pairs) if errors of the aid are not correlated in time */
+    double pair_sum;   /**< sum of the products of normalised innovations with those before */
 } imk_navigation_filter_counts;
+/** Correlation of the innovations with those before: 0 within 1/sqrt(pairs) if all is as described;
+ *  more if errors of the aid are correlated in time and not described so. NaN without pairs. */
+IMK_API double imk_navigation_filter_correlation(const imk_navigation_filter_counts *counts);
 
 /** A filter in progress: opaque memory of imk_navigation_filter_size() bytes, given by the caller.
  */

@@ -205,15 +205,14 @@ static void tell(imk_navigate_log *n, const imk_navigate_aid *a)
             n, level, "aid_refused", name,
             IMKI_NUMBERS(refused, tried, n->first_time + c->first_refused - n->record.dt));
     if (c->recovered > 0)
-        imki_find(
-            &n->findings, level, "aid_recovered", name,
+        imki_aid_find(n, level, "aid_recovered", name,
             IMKI_NUMBERS((double)c->recovered, n->first_time + c->first_recovered - n->record.dt));
     if (c->refused_in_row >= REFUSED_MAX)
         imki_aid_find(n, level, "aid_lost", name, IMKI_NUMBERS((double)c->refused_in_row));
     const double q = c->degrees > 20 ? c->chi_square / (double)c->degrees : 0.0;
     if (q > 2.0)
         imki_aid_find(n, level, "aid_too_good", name, IMKI_NUMBERS(sqrt(q), q));
-    const double r = c->pairs > 20 ? c->pair_sum / (double)c->pairs : 0.0;
+    const double r = c->pairs > 20 ? imk_navigation_filter_correlation(c) : 0.0;
     if (fabs(r) > correlation_told && fabs(r) > correlation_sigmas / sqrt((double)c->pairs))
         imki_aid_find(n, level, "aid_correlated", name, IMKI_NUMBERS(100 * r));
 }

@@ -218,6 +218,12 @@ imk_navigation_filter_counts imk_navigation_filter_aided(const imk_navigation_fi
     return filter->counts[aid < IMK_AIDS_MAX ? aid : IMK_AIDS_MAX];
 }
 
+double imk_navigation_filter_correlation(const imk_navigation_filter_counts *c)
+{
+    return c->pairs > 0 ? c->pair_sum / (double)c->pairs * (double)c->degrees / c->chi_square
+                        : (double)NAN;
+}
+
 imk_innovation imk_navigation_filter_innovation(const imk_navigation_filter *filter)
 {
     return filter->innovation;

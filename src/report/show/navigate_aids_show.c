@@ -16,11 +16,6 @@ static double per_degree(double square, uint64_t degrees)
     return degrees > 0 ? square / (double)degrees : (double)NAN;
 }
 
-static double correlation(const imk_navigate_aid *a)
-{
-    return a->counts.pairs > 0 ? a->counts.pair_sum / (double)a->counts.pairs : (double)NAN;
-}
-
 /* ---- data ---- */
 
 static void show_one(const imk_navigate_aid *a, imk_result *result)
@@ -43,7 +38,7 @@ static void show_one(const imk_navigate_aid *a, imk_result *result)
     imk_result_quantity(result, "first", a->first, "s");
     imk_result_quantity(result, "last", a->last, "s");
     imk_result_number(result, "chi_square_per_degree", per_degree(c->chi_square, c->degrees));
-    imk_result_number(result, "correlation", correlation(a));
+    imk_result_number(result, "correlation", imk_navigation_filter_correlation(&a->counts));
     imk_result_count(result, "compared", (long long)a->compared);
     imk_result_number(result, "compared_chi_square_per_degree",
                       per_degree(a->compared_square, a->compared_degrees));
@@ -110,7 +105,7 @@ void imki_show_aids_table(const imk_navigate_log *n, imk_result *result)
         imk_table_add(table, "%llu", (unsigned long long)a->counts.accepted);
         imk_table_add(table, "%llu", (unsigned long long)a->counts.refused);
         add_number(table, per_degree(a->counts.chi_square, a->counts.degrees));
-        add_number(table, correlation(a));
+        add_number(table, imk_navigation_filter_correlation(&a->counts));
     }
     imk_result_gap(result);
     for (size_t k = 0; k < n->aid_count; k++)
