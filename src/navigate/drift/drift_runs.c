@@ -273,7 +273,7 @@ static void finish_alignment(crew *c)
         const imk_vector3 force = {{sum[3] / count, sum[4] / count, sum[5] / count}};
         const imk_geodetic place = imk_geodetic_from_ecef(r->start.position);
         imk_matrix3 c_nb = imk_matrix3_identity();
-        r->gone = imki_alignment_of_means(force, rate, &c_nb) != IMK_OK;
+        r->gone = imki_alignment_of_means(force, rate, place, &c_nb) != IMK_OK;
         r->start.attitude = imk_quaternion_from_matrix(
             imk_matrix3_multiply(imk_ned_axes(place.latitude, place.longitude), c_nb));
     }

@@ -123,7 +123,8 @@ static double *plain_rows(const imk_model *model, const imk_simulation *simulati
     return log;
 }
 
-/* C_nb by gravity first: down is against the mean force, east across the mean rate. */
+/* C_nb by gravity first: down is against the mean force, east across the mean rate; then what a
+ * plumb line leans. */
 static imk_quaternion plain_alignment(const double *log, size_t stride, size_t rows,
                                       imk_geodetic place)
 {
@@ -141,6 +142,7 @@ static imk_quaternion plain_alignment(const double *log, size_t stride, size_t r
         c_nb.m[1][i] = east.v[i];
         c_nb.m[2][i] = down.v[i];
     }
+    c_nb = imk_matrix3_multiply(imk_plumb_axes(place), c_nb);
     return imk_quaternion_from_matrix(
         imk_matrix3_multiply(imk_ned_axes(place.latitude, place.longitude), c_nb));
 }
