@@ -96,9 +96,9 @@ static inline real height_along(slope vertical, real pp, real z)
     return pp * vertical.k + z * vertical.s - SEMI_MAJOR_AXIS * root;
 }
 
-/* Normal gravity. Down as in imk_normal_gravity(), but for 2e-16 of it, as one e^2 serves the height
- * and the magnitude. Toward the equator, as the vertical turns with the height [HEISKANEN1967,
- * sec. 2-8],
+/* Normal gravity. Down as in imk_normal_gravity(), but for 2e-16 of it, as one e^2 serves the
+ * height and the magnitude. Toward the equator, as the vertical turns with the height
+ * [HEISKANEN1967, sec. 2-8],
  *
  *     g_north = -h sin(2 latitude) (c0 + c1 h/a + c2 (h/a)^2 + c3 s),   s = sin^2(latitude)
  *
@@ -115,9 +115,8 @@ static inline void gravity_along(slope vertical, real height, const real positio
     const real change = 2.0 * (1.0 + FLATTENING + ROTATION_RATIO - 2.0 * FLATTENING * s);
     const real magnitude = surface * (1.0 - change * relative + 3.0 * (relative * relative));
     /* g_north = -bend sin cos;  north is -(s k x, s k y) across the axis, k p along it */
-    const real bend =
-        height * ((MERIDIAN_GRAVITY_0 + MERIDIAN_GRAVITY_S * s) +
-                  relative * (MERIDIAN_GRAVITY_1 + MERIDIAN_GRAVITY_2 * relative));
+    const real bend = height * ((MERIDIAN_GRAVITY_0 + MERIDIAN_GRAVITY_S * s) +
+                                relative * (MERIDIAN_GRAVITY_1 + MERIDIAN_GRAVITY_2 * relative));
     const real across = (magnitude - s * bend) * vertical.k;
     gravity[0] = -(across * position[0]);
     gravity[1] = -(across * position[1]);

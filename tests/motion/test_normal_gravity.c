@@ -80,7 +80,8 @@ static point gravity(point at)
           rate * rate * u * c * c) /
         w;
     const double along_b = (aa / v * shape(u) / shape(minor()) - rate * rate * v) * s * c / w;
-    return (point){(u / v * c * along_u - s * along_b) / w, (s * along_u + u / v * c * along_b) / w};
+    return (point){(u / v * c * along_u - s * along_b) / w,
+                   (s * along_u + u / v * c * along_b) / w};
 }
 
 static point point_at(double latitude, double height)
@@ -115,10 +116,12 @@ static void test_oracle_is_a_field(void **state)
                         (potential((point){at.p, at.z + h}) - potential((point){at.p, at.z - h})) /
                             (2.0 * h),
                         3e-9);
-            const double pp = (gravity((point){at.p + k, at.z}).p -
-                               gravity((point){at.p - k, at.z}).p) / (2.0 * k);
-            const double zz = (gravity((point){at.p, at.z + k}).z -
-                               gravity((point){at.p, at.z - k}).z) / (2.0 * k);
+            const double pp =
+                (gravity((point){at.p + k, at.z}).p - gravity((point){at.p - k, at.z}).p) /
+                (2.0 * k);
+            const double zz =
+                (gravity((point){at.p, at.z + k}).z - gravity((point){at.p, at.z - k}).z) /
+                (2.0 * k);
             /* The gradients are 1.5e-6 and 3e-6 1/s^2, what they add up to 1.06e-8. */
             CHECK_CLOSE(pp + zz + g.p / at.p, 2.0 * rate * rate, 3e-10);
         }
@@ -147,8 +150,8 @@ static double worst_north(double low, double high, double step)
             if (height == 0.0)
                 continue;
             closed(latitude, height, &north, &down);
-            const imk_vector3 g = imk_gravity_ecef(
-                imk_ecef_from_geodetic((imk_geodetic){latitude, 0.7, height}));
+            const imk_vector3 g =
+                imk_gravity_ecef(imk_ecef_from_geodetic((imk_geodetic){latitude, 0.7, height}));
             const imk_vector3 local =
                 imk_matrix3_apply(imk_matrix3_transpose(imk_ned_axes(latitude, 0.7)), g);
             CHECK_CLOSE(local.v[1], 0.0, 1e-14);

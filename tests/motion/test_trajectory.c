@@ -25,10 +25,9 @@ static void test_standstill(void **state)
     const imk_matrix3 c_bn = imk_matrix3_transpose(c_nb);
     const imk_vector3 gravity = imk_gravity_ecef(imk_ecef_from_geodetic(place));
     const imk_vector3 force = imk_vector3_scale(
-        imk_matrix3_apply(
-            c_bn,
-            imk_matrix3_apply(imk_matrix3_transpose(imk_ned_axes(place.latitude, place.longitude)),
-                              gravity)),
+        imk_matrix3_apply(c_bn, imk_matrix3_apply(imk_matrix3_transpose(imk_ned_axes(
+                                                      place.latitude, place.longitude)),
+                                                  gravity)),
         -1.0);
     const imk_vector3 rate = imk_matrix3_apply(c_bn, imk_earth_rate(place.latitude));
     CHECK_CLOSE(at.place.latitude, place.latitude, 1e-15);

@@ -71,12 +71,10 @@ static imk_alignment_result at_rest(const imk_alignment_settings *settings, imk_
 {
     const imk_geodetic place = settings->place;
     const imk_matrix3 c_bn = imk_matrix3_transpose(c_nb);
-    const imk_matrix3 to_ned =
-        imk_matrix3_transpose(imk_ned_axes(place.latitude, place.longitude));
+    const imk_matrix3 to_ned = imk_matrix3_transpose(imk_ned_axes(place.latitude, place.longitude));
     const imk_vector3 gravity =
         imk_matrix3_apply(to_ned, imk_gravity_ecef(imk_ecef_from_geodetic(place)));
-    const imk_vector3 force =
-        imk_vector3_subtract(force_error, imk_matrix3_apply(c_bn, gravity));
+    const imk_vector3 force = imk_vector3_subtract(force_error, imk_matrix3_apply(c_bn, gravity));
     const imk_vector3 rate =
         imk_vector3_add(imk_matrix3_apply(c_bn, imk_earth_rate(place.latitude)), rate_error);
     const session b = begin(settings);
