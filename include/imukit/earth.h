@@ -13,9 +13,9 @@ IMK_BEGIN_C
 #define IMK_EARTH_RATE 7.292115e-5
 
 /** Normal gravity down the ellipsoid's normal [m/s^2] at a geodetic latitude [rad] and a height
- * above the ellipsoid [m]: Somigliana's formula, and the expansion of second order in height (error
- * below 1e-6 m/s^2 up to 10 km). The magnitude differs by less than 4e-10 m/s^2 up to 10 km, as the
- *  component toward the equator is small; imk_gravity_ecef() has both. */
+ *  above the ellipsoid [m]: Somigliana's formula, and the expansion of second order in height
+ *  (error below 1e-6 m/s^2 up to 10 km). The magnitude differs by less than 4e-10 m/s^2 up to
+ *  10 km, as the component toward the equator is small; imk_gravity_ecef() has both. */
 IMK_API double imk_normal_gravity(double latitude, double height);
 
 /** The Earth's rotation in north-east-down axes [rad/s]. */

@@ -13,8 +13,8 @@
  *
  *      d = -f/|f|,   e = d x w/|d x w|,   n = e x d       rows of C_nb
  *
- *  turned by what gravity at the place has toward the equator, so that errors b of force and c of
- * rate, in north-east-down axes, leave to first order
+ *  turned by what gravity at the place has toward the equator, so that errors b of force and c
+ *  of rate, in north-east-down axes, leave to first order
  *
  *      north: -b_E/g,   east: b_N/g,   down: b_E tan(L)/g - c_E/(w_ie cos L).
  *
