@@ -93,6 +93,7 @@ static int read_start(const drift_options *o, imk_drift_settings *s)
     if (!isnan(o->align_time))
         s->alignment_time = o->align_time;
     s->vertical = o->vertical == 1 ? IMK_VERTICAL_FREE : IMK_VERTICAL_SLAVED;
+    s->attitude_errors = o->attitude_errors == 1 ? IMK_ATTITUDE_EARTH : IMK_ATTITUDE_LOCAL;
     return code;
 }
 
