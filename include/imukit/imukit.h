@@ -43,6 +43,7 @@
 #include "imukit/magnetometer.h"
 #include "imukit/model.h"
 #include "imukit/model_parameter.h"
+#include "imukit/model_unstated.h"
 #include "imukit/motion.h"
 #include "imukit/motion_script.h"
 #include "imukit/names.h"

@@ -167,6 +167,24 @@ bool imki_field_equal(const imki_field *field, const imk_triad *a, const imk_tri
     }
 }
 
+/* Another way to state a field has its bit. */
+uint64_t imki_field_bit(const imki_field *field)
+{
+    const bool plain = field->shape == IMKI_SCALAR || field->shape == IMKI_AXES ||
+                       field->shape == IMKI_OFF_DIAGONAL || field->shape == IMKI_ROWS ||
+                       field->shape == IMKI_QUADRATIC;
+    size_t index = 0;
+    while (imki_triad_fields[index].offset != field->offset)
+        index++;
+    return plain ? UINT64_C(1) << index : 0;
+}
+
+bool imki_field_stated_zero(const imki_field *field, const imk_triad *triad)
+{
+    const uint64_t bit = imki_field_bit(field);
+    return (triad->stated_zero & bit) != 0 && imki_field_absent(field, triad);
+}
+
 static bool is_standard_triad(const imk_triad *triad)
 {
     static const double standard[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -91,7 +91,16 @@ int imki_list_count(const imki_field *field, const imk_triad *triad);
 bool imki_field_equal(const imki_field *field, const imk_triad *a, const imk_triad *b,
                       bool with_sigmas);
 
-/* True when the field has its default in the triad, so that it need not be written. */
+/* Bit of a field in stated_zero; 0: the field is no set of plain numbers. */
+uint64_t imki_field_bit(const imki_field *field);
+/* True when the numbers of the field are 0 and stated to be. */
+bool imki_field_stated_zero(const imki_field *field, const imk_triad *triad);
+
+/* Terms without which a sensor's errors are not known: those that model_unstated.c looks for. */
+bool imki_field_expected(const imki_field *field, int kind);
+
+/* True when the field has its default in the triad, so that it need not be written unless it is
+ * stated to be zero. */
 bool imki_field_absent(const imki_field *field, const imk_triad *triad);
 
 /* The same of the numbers of a field of shape scalar … quadratic. */
