@@ -55,7 +55,7 @@ typedef struct imk_graded {
                                 NULL: it is computed, and the members below are valid */
     imk_grade_way way[IMK_GRADE_WAYS];
     /** Terms that the model does not state and that would matter for the position after an hour or
-     * a day, the attitude at the start being given. If there are any, all figures are lower bounds,
+     *  a day, with the attitude given at the start. If there are any, all figures are lower bounds,
      *  and the classes of the ways are the best that are possible. */
     size_t missing_count;
     imk_drift_missing missing[IMK_UNSTATED_MAX];

@@ -5,8 +5,8 @@
  *
  *  A term is stated by a number, or by a zero that is stated to be one (`repeatability: 0 deg/h` in
  *  a model file). What is not stated can be assumed to be typical of a class: the values of the
- *  grade presets (imk_device), but not more than the evidence allows, if the term was looked for
- * and not found. */
+ *  grade presets (imk_device), but not more than the evidence allows, where the term was looked for
+ *  and not found. */
 #ifndef IMUKIT_MODEL_UNSTATED_H
 #define IMUKIT_MODEL_UNSTATED_H
 
@@ -46,8 +46,8 @@ typedef struct imk_unstated {
 IMK_API void imk_model_unstated(const imk_model *model, imk_unstated *unstated);
 
 /** The class whose preset is nearest to the noise, run-to-run bias and scale factor that a sensor
- *  states, by the mean square of the logarithms of the ratios. Not imk_grade_model(): this one
- * needs no biases. Without any of these numbers it is the class of the other kind of sensor;
+ *  states, by the mean square of the logarithms of the ratios. Unlike imk_grade_model(), it needs
+ *  no biases. Without any of these numbers it is the class of the other kind of sensor;
  *  IMK_GRADE_NONE when that one states nothing either. */
 IMK_API imk_grade imk_model_class(const imk_model *model, int sensor);
 
