@@ -147,9 +147,9 @@ static int open_models(work *w)
         if (added >= 0)
             command_note(
                 "%s has no %s: perfect ones are taken, so that all errors are those of its "
-                "%s",
+                "%s; imukit join %s MODEL -o UNIT.yaml adds those of another model",
                 w->name[m], added == IMK_GYRO ? "gyros" : "accelerometers",
-                added == IMK_GYRO ? "accelerometers" : "gyros");
+                added == IMK_GYRO ? "accelerometers" : "gyros", w->name[m]);
     }
     return code;
 }

@@ -42,6 +42,7 @@
 #include "imukit/linear_algebra.h"
 #include "imukit/magnetometer.h"
 #include "imukit/model.h"
+#include "imukit/model_join.h"
 #include "imukit/model_parameter.h"
 #include "imukit/model_unstated.h"
 #include "imukit/motion.h"

@@ -21,6 +21,13 @@ int imki_row_length(imki_shape shape)
     return shape == IMKI_QUADRATIC ? 6 : three ? 3 : 1;
 }
 
+int imki_turned_element(const imki_field *field, int k, int turn)
+{
+    const bool turns = imki_row_length(field->shape) > 1 &&
+                       field->offset != offsetof(imk_triad, nonlinearity.cross_products);
+    return turns ? k / 3 * 3 + (k + turn) % 3 : k;
+}
+
 const double *imki_field_values(const imki_field *field, const void *base)
 {
     /* Every one of the structs begins with its values. */

@@ -74,6 +74,11 @@ const char *imki_polynomial_unit(const imki_field *field, int kind, int order);
 /* Numbers of a row of this shape: 3 or 6; 1 for axes and scalars. */
 int imki_row_length(imki_shape shape);
 
+/* Where number k of a row goes when its sensor is turned on by `turn` body axes in cyclic order:
+ * squares and the products xy, yz, zx turn as components do. Kip, Kio, Kpo are of the sensor
+ * itself. */
+int imki_turned_element(const imki_field *field, int k, int turn);
+
 /* Value and sigma arrays of a field of shape scalar … quadratic: row i, number j at
  * [i * imki_row_length() + j]. `base` is the triad, the list element or the timing. */
 const double *imki_field_values(const imki_field *field, const void *base);

@@ -170,7 +170,10 @@ static void show_position(const imk_graded *one, imk_result *result)
     const char *least = is_best ? "at least " : "";
     char text[600], hour[IMK_READABLE_SIZE], day[IMK_READABLE_SIZE];
     if (one->no_position)
-        snprintf(text, sizeof text, "Position: not computed; %s", one->no_position);
+        snprintf(text, sizeof text, "Position: not computed; %s%s", one->no_position,
+                 one->model->gyro.present && one->model->accel.present
+                     ? ""
+                     : " (imukit join makes a unit of gyros and accelerometers)");
     else if (p->validity[IMK_GRADE_HOUR] == IMK_DRIFT_LOST)
         snprintf(text, sizeof text,
                  "Position: below every class that claims one; no position any more after 1 h");
