@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file navigation_smoother.h
  *  Smoothing of a filtered navigation: what readings later than an instant say of the estimate
- *  there. The filter records its updates and the points whose estimates are wanted; a pass
- * backwards gives them.
+ *  there. The filter records its updates and the points whose estimates are wanted. A pass
+ *  backwards gives them.
  *
  *  The estimates are those of Rauch, Tung and Striebel, in the form of Bryson and Frazier, which
  *  needs no inverse of a covariance. Equations: docs/theory/navigation-filter.md.
  *
- *  Memory: with n states, 8 (25 n + 30) bytes for a point, 8 (10 n + 2 n m + 20) bytes for an
- * update of m rows, and 8 (2 n m + 20) for one at the same time as that before: 8 kB for a point
- * and 3 kB for an update of three rows with 39 states. */
+ *  Memory: with n states a point takes 8 (25 n + 34) bytes, an update of m rows 8 (10 n + 2 n m +
+ *  34), and one at the time of the record before 8 (2 n m + 34). With 39 states that is 8 kB for a
+ *  point, and 5 kB or 2 kB for an update of three rows. */
 #ifndef IMUKIT_NAVIGATION_SMOOTHER_H
 #define IMUKIT_NAVIGATION_SMOOTHER_H
 

@@ -18,18 +18,7 @@
 
 enum { ERRORS = IMK_NAVIGATION_ERRORS, WANTED = ERRORS + 6, STATES_MAX = IMKI_FILTER_STATES_MAX };
 
-/* What happened, in order; later ones first. */
-typedef struct record {
-    struct record *before;
-    size_t rows;  /* of an update; 0: a point */
-    double *step; /* 10 x n: rows 0-8 of the transition since the record before, and the decays;
-                     NULL: no time has gone by */
-    double *h;    /* rows x n; of a point: WANTED x n, rows of P */
-    double *gain; /* n x rows */
-    double z[3], inverse[3][3]; /* S^-1 z and S^-1; of a point not used */
-    imk_navigation_state state;
-    imk_vector3 bias[2];
-} record;
+typedef imki_smoother_record record;
 
 struct imk_navigation_smoother {
     imk_navigation_filter *filter;
@@ -74,6 +63,11 @@ imk_navigation_smoother *imk_navigation_smoother_start(imk_navigation_filter *fi
     clear_step(s);
     filter->smoother = s;
     return s;
+}
+
+const imki_smoother_record *imki_smoother_last(const imk_navigation_smoother *s)
+{
+    return s->last;
 }
 
 /* A record with the step since the one before, which begins anew. */
