@@ -117,7 +117,7 @@ static void test_same_from_pipes(void **state)
         const char *line = readings[reading].line;
         const bool looks = strstr(line, "evaluate @") || strstr(line, "identify @ -o");
         for (size_t way = 0; way < (looks ? WAYS : FIRST_WAYS); way++)
-            if (!check_skips(reading + way, 2))
+            if (!check_skips(reading + way, 4))
                 check_reading(reading, way);
     }
 }
@@ -233,7 +233,7 @@ static void test_same_to_pipes(void **state)
                   "other && test -p $F");
         unlink(name);
         for (size_t k = 0; k < sizeof streams / sizeof streams[0]; k++) {
-            if (check_skips(i + k, 3))
+            if (check_skips(i + k, 5))
                 continue;
             name_output(writings[i].line, streams[k]);
             check_run("eval \"$LINE\" | $SAME | cmp - whole");
