@@ -233,7 +233,7 @@ static void test_same_to_pipes(void **state)
                   "other && test -p $F");
         unlink(name);
         for (size_t k = 0; k < sizeof streams / sizeof streams[0]; k++) {
-            if (check_skips(i + k, 5))
+            if (check_skips(i + k, 3))
                 continue;
             name_output(writings[i].line, streams[k]);
             check_run("eval \"$LINE\" | $SAME | cmp - whole");
