@@ -102,7 +102,8 @@ IMK_API imk_status imk_navigation_filter_aligned(const imk_alignment_result *ali
 /** Estimate of the filter. */
 typedef struct imk_navigation_filter_estimate {
     imk_navigation_state state;
-    /** Of position, velocity and attitude errors; north, east, down at the estimated place. */
+    /** Of position, velocity and attitude errors; north, east, down at the estimated place. Those
+     *  of attitude are of what is displayed (imk_displayed_attitude_error()). */
     double covariance[IMK_NAVIGATION_ERRORS][IMK_NAVIGATION_ERRORS];
     imk_vector3 gyro_bias, accel_bias;             /**< sums of the parts; body axes */
     imk_vector3 gyro_bias_sigma, accel_bias_sigma; /**< 1 sigma of these biases */

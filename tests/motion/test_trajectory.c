@@ -23,8 +23,12 @@ static void test_standstill(void **state)
     imk_trajectory_state(&trajectory, 12345.678, &at);
     const imk_matrix3 c_nb = imk_matrix3_from_euler(angles[0], angles[1], angles[2]);
     const imk_matrix3 c_bn = imk_matrix3_transpose(c_nb);
-    const double gravity = imk_normal_gravity(place.latitude, place.height);
-    const imk_vector3 force = imk_matrix3_apply(c_bn, (imk_vector3){{0.0, 0.0, -gravity}});
+    const imk_vector3 gravity = imk_gravity_ecef(imk_ecef_from_geodetic(place));
+    const imk_vector3 force = imk_vector3_scale(
+        imk_matrix3_apply(c_bn, imk_matrix3_apply(imk_matrix3_transpose(imk_ned_axes(
+                                                      place.latitude, place.longitude)),
+                                                  gravity)),
+        -1.0);
     const imk_vector3 rate = imk_matrix3_apply(c_bn, imk_earth_rate(place.latitude));
     CHECK_CLOSE(at.place.latitude, place.latitude, 1e-15);
     CHECK_CLOSE(at.place.longitude, place.longitude, 1e-15);

@@ -286,6 +286,18 @@ imk_rest_readings imk_navigation_filter_rest(const imk_navigation_filter *f)
     return rest;
 }
 
+/* Attitude errors psi to those of what is displayed, phi = psi - turn dr: rows, then columns. */
+static void display_attitude(imk_vector3 position, double p[ERRORS][ERRORS])
+{
+    const imk_matrix3 turn = imk_level_turn(imk_geodetic_from_ecef(position));
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < ERRORS; j++)
+            p[6 + i][j] -= turn.m[i][0] * p[0][j] + turn.m[i][1] * p[1][j];
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < ERRORS; j++)
+            p[j][6 + i] -= turn.m[i][0] * p[j][0] + turn.m[i][1] * p[j][1];
+}
+
 void imk_navigation_filter_get(imk_navigation_filter *f, imk_navigation_filter_estimate *estimate)
 {
     imki_navigation_filter_propagate(f);
@@ -302,6 +314,7 @@ void imk_navigation_filter_get(imk_navigation_filter *f, imk_navigation_filter_e
                             sum += axes.m[k][i] * f->covariance[(a + k) * n + b + l] * axes.m[l][j];
                     estimate->covariance[a + i][b + j] = sum;
                 }
+    display_attitude(f->strapdown.state.position, estimate->covariance);
     estimate->gyro_bias = f->bias_sum[IMKI_GYRO_PART];
     estimate->accel_bias = f->bias_sum[IMKI_ACCEL_PART];
     imk_vector3 *sigma[2] = {&estimate->gyro_bias_sigma, &estimate->accel_bias_sigma};
