@@ -9,7 +9,8 @@
 
 typedef struct navigate_options {
     log_input log;
-    const char *position, *position_sigma, *velocity, *attitude, *heading, *model, *zero_velocity, *output, *plot, *report;
+    const char *position, *position_sigma, *velocity, *attitude, *heading, *model, *zero_velocity,
+        *output, *plot, *report;
     /* NaN: not given, of align, stop and still_rotation */
     double align, stop, still_velocity, still_rotation, interval, standard_gravity;
     option_integer samples;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit navigate from a given velocity: options, refusals, and what is said. */
-#include "run_command.h"
+#include "cli/run_command.h"
 
 #define PLACE "--position '45 deg, 0 deg, 0 m'"
 
