@@ -30,6 +30,13 @@ static const option navigate_option_table[] = {
     {"attitude", OPTION_TEXT, AT(attitude), .value = "ANGLES",
      .help =
          "roll, pitch and yaw at the start instead of --align, such as \"0.5 -1.2 90 +- 0.1 deg\""},
+    {"velocity", OPTION_TEXT, AT(velocity), .value = "VELOCITY",
+     .help =
+         "velocity at the start with --attitude, north, east and down, such as \"20 -3 0 +- 0.1 "
+         "m/s\"; default 0"},
+    {"position-sigma", OPTION_TEXT, AT(position_sigma), .value = "SIGMA",
+     .help = "1 sigma of --position: one value, or north, east and down, such as \"2 2 5 m\"; "
+             "default 0"},
     {"model", OPTION_FILE, AT(model), .letter = 'm', .value = "MODEL",
      .help = "error model of the sensors, a file or a name from imukit devices: it predicts the "
              "error and weighs updates"},

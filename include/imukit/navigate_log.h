@@ -37,6 +37,10 @@ typedef struct imk_navigate_log_settings {
                            only; default false */
     double attitude[3]; /**< roll, pitch, yaw at the start [rad] */
     double attitude_sigma[3];
+    bool
+        velocity_given; /**< `velocity` is that of the start; only with align 0; default false: 0 */
+    double velocity[3]; /**< north, east, down [m/s]; down 0 while the height is held */
+    double velocity_sigma[3], position_sigma[3]; /**< north, east, down [m/s], [m]; default 0 */
     const imk_model *model; /**< errors of the sensors; must outlive the result; NULL: not known */
     const char *model_name; /**< its name in findings; must outlive the result */
     /** Stops used for zero-velocity updates; needs a model; default IMK_STOPS_NONE. The alignment

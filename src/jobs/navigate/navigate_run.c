@@ -24,6 +24,10 @@ static imk_status describe_errors(imk_navigate_log *n, imk_navigation_filter_set
     s->samples = o->samples;
     s->velocity_sigma = o->still_velocity;
     s->rotation_sigma = o->still_rotation;
+    for (int i = 0; i < 3; i++) {
+        s->initial_sigma[i] = o->position_sigma[i];
+        s->initial_sigma[3 + i] = o->velocity_sigma[i];
+    }
     if (aligned)
         s->initial_sigma[3] = s->initial_sigma[4] = s->initial_sigma[5] = o->still_velocity;
     for (int i = 0; i < 3 && !(aligned && o->model); i++)

@@ -58,6 +58,10 @@ static void show_start(const imk_navigate_log *n, imk_result *result)
     for (int i = 0; i < 3; i++)
         imk_result_quantity(result, angles[i], n->attitude[i], "rad");
     show_three("attitude_sigma", n->attitude_sigma, "rad", result);
+    if (!is_aligned(n)) {
+        show_three("velocity", n->settings.velocity, "m/s", result);
+        imk_result_flag(result, "velocity_given", n->settings.velocity_given);
+    }
     if (is_aligned(n)) {
         imk_result_text(result, "method", method_names[n->method]);
         imk_result_flag(result, "north_found", !n->coarse);
@@ -134,7 +138,11 @@ static void show_attitude(const imk_navigate_log *n, imk_result *result)
                  heading = n->attitude_sigma[2] / degree;
     char text[120], north[60] = "";
     if (!is_aligned(n)) {
-        imk_result_line(result, "Attitude given: %s", angles_text(n->attitude, text));
+        const double *v = n->settings.velocity;
+        imk_result_line(
+            result, "Attitude given: %s\nVelocity %s: north %.4g, east %.4g, down %.4g m/s",
+            angles_text(n->attitude, text),
+            n->settings.velocity_given ? "given" : "assumed (--velocity)", v[0], v[1], v[2]);
         return;
     }
     if (!(n->attitude_sigma[2] < unknown_heading))
