@@ -123,6 +123,8 @@ static void put_settings(const imk_drift_settings *s, imk_result *result)
     imk_result_text(result, "aligned", s->alignment == IMK_ALIGNED_SELF ? "self" : "given");
     if (s->alignment == IMK_ALIGNED_SELF)
         put_number("alignment time [s]", s->alignment_time, result);
+    imk_result_text(result, "attitude errors",
+                    s->attitude_errors == IMK_ATTITUDE_EARTH ? "earth" : "local");
     imk_result_flag(result, "compensated", s->compensated);
     imk_result_array(result, "initial sigma [m, m/s, rad]");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)

@@ -93,6 +93,7 @@ static int read_start(const drift_options *o, imk_drift_settings *s)
     if (!isnan(o->align_time))
         s->alignment_time = o->align_time;
     s->vertical = o->vertical == 1 ? IMK_VERTICAL_FREE : IMK_VERTICAL_SLAVED;
+    s->attitude_errors = o->attitude_errors == 1 ? IMK_ATTITUDE_EARTH : IMK_ATTITUDE_LOCAL;
     return code;
 }
 
@@ -132,12 +133,20 @@ static double motion_length(const drift_scene *s)
     return s->motion ? imk_motion_file_duration(s->motion) : (double)INFINITY;
 }
 
+/* The last row that is not past the end, whatever the rounding of its time. */
+static double last_row(double length, double rate)
+{
+    return floor(length * rate + 1e-6) / rate;
+}
+
 static int choose_duration(const drift_options *o, const drift_scene *s, double *duration)
 {
     const double length = motion_length(s);
     *duration = o->duration;
     if (isnan(*duration))
-        *duration = s->want.asked && !o->times ? s->want.time : isinf(length) ? day : length;
+        *duration = s->want.asked && !o->times ? s->want.time
+                    : isinf(length)            ? day
+                                               : last_row(length, s->settings.rate);
     if (!(*duration > 0))
         return command_misused("--duration must be positive");
     if (*duration > 1e8)

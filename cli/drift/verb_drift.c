@@ -36,6 +36,11 @@ static const option navigation_option_table[] = {
     {"vertical", OPTION_CHOICE, AT(vertical), .value = "HOW", .choices = "slaved|free",
      .help = "slaved (the default): height follows the truth, as with a barometer; free: it grows "
              "without bound"},
+    {"attitude-errors", OPTION_CHOICE, AT(attitude_errors), .value = "WHICH",
+     .choices = "local|earth",
+     .help = "local (the default): of what is displayed, tilt and heading relative to the local "
+             "level at the computed position (beyond 89 deg of latitude the grid heading); earth: "
+             "against Earth-fixed axes; --initial-attitude is meant in the same way"},
     {"compensated", OPTION_FLAG, AT(compensated),
      .help = "show also the figures after calibration: known values of the model are taken out, "
              "and their uncertainty stays"},

@@ -10,6 +10,7 @@
 #ifndef IMUKIT_IMUKIT_H
 #define IMUKIT_IMUKIT_H
 
+#include "imukit/aiding.h"
 #include "imukit/alignment.h"
 #include "imukit/allan.h"
 #include "imukit/allan_fit.h"
@@ -49,6 +50,7 @@
 #include "imukit/motion_script.h"
 #include "imukit/names.h"
 #include "imukit/navigate.h"
+#include "imukit/navigation_filter.h"
 #include "imukit/noise.h"
 #include "imukit/noise_map.h"
 #include "imukit/procedure.h"
@@ -59,6 +61,7 @@
 #include "imukit/samples.h"
 #include "imukit/simulate.h"
 #include "imukit/spectrum.h"
+#include "imukit/standstill.h"
 #include "imukit/static_detection.h"
 #include "imukit/status.h"
 #include "imukit/technology_map.h"
@@ -66,6 +69,5 @@
 #include "imukit/thermal.h"
 #include "imukit/units.h"
 #include "imukit/utf8.h"
-#include "imukit/zero_velocity.h"
 
 #endif

@@ -5,13 +5,13 @@
  *
  *  The attitude at the start is either given or found while the unit is stationary (alignment.h). A
  *  strapdown mechanisation (navigate.h) continues from there. If the settings say so, zero-velocity
- *  updates correct it at stops (zero_velocity.h). */
+ *  updates correct it at stops (navigation_filter.h). */
 #ifndef IMUKIT_NAVIGATE_LOG_H
 #define IMUKIT_NAVIGATE_LOG_H
 
 #include "imukit/alignment.h"
 #include "imukit/even_record.h"
-#include "imukit/zero_velocity.h"
+#include "imukit/navigation_filter.h"
 
 IMK_BEGIN_C
 
@@ -87,8 +87,8 @@ typedef struct imk_navigate_log {
     double attitude[3];         /**< roll, pitch, yaw at the start of navigation [rad] */
     double attitude_sigma[3];   /**< 1 sigma about north, east, down [rad]; 0: not known */
     imk_navigation_state start; /**< state at the start of navigation */
-    imk_zero_velocity_estimate end;
-    imk_zero_velocity_counts counts;
+    imk_navigation_filter_estimate end;
+    imk_navigation_filter_counts counts;
     bool at_rest;   /**< the unit never moved, so the distance from the start is the error */
     double largest; /**< largest horizontal distance from the start [m] */
     size_t track_rows;

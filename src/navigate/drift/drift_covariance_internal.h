@@ -176,8 +176,9 @@ typedef struct imki_drift_node {
     imki_matrix9 keep;        /* x <- keep x: what a slaved vertical leaves; without it unity */
     imki_matrix9 full;        /* x with the vertical velocity that belongs to it */
     bool slaved;
-    double climb[3]; /* this velocity, upward, from dr */
-    imki_matrix9 f;  /* F */
+    double climb[3];   /* this velocity, upward, from dr */
+    imki_matrix9 f;    /* F */
+    imk_matrix3 level; /* what dr, in `axes`, turns the displayed level by; 0: psi is stated */
 } imki_drift_node;
 
 typedef struct imki_drift_walk {
@@ -216,6 +217,13 @@ void imki_drift_fill_step(const imki_drift_walk *walk, const imki_drift_plan *pl
 /* Self-alignment as a step that ends at the start: means of the readings make the attitude. */
 void imki_drift_alignment_step(const imki_drift_walk *walk, const imki_drift_plan *plan,
                                imki_drift_step *step);
+
+/* ---- drift_axes.c ---- */
+
+/* Set node->level. */
+void imki_drift_level(imki_drift_earth earth, imk_attitude_errors stated, imki_drift_node *node);
+/* T: the nine errors that are stated from x. */
+void imki_drift_result_axes(const imki_drift_node *node, imki_matrix9 *t);
 
 /* ---- drift_propagate.c ---- */
 

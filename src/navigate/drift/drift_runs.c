@@ -149,7 +149,6 @@ static imk_status start_run(crew *c, run *r, imki_parts *memory, imk_error *erro
 {
     const imk_drift_settings *s = c->settings;
     const imk_model *model = c->model;
-    const bool given = s->alignment == IMK_ALIGNED_GIVEN;
     double *columns = imki_take(memory, CHANNELS * ROWS * sizeof(double));
     for (size_t i = 0; i < CHANNELS; i++)
         r->column[i] = columns + i * ROWS;
@@ -171,8 +170,7 @@ static imk_status start_run(crew *c, run *r, imki_parts *memory, imk_error *erro
         return status;
     const double begin = imk_simulator_true_time(r->simulator, (int64_t)c->alignment_rows);
     const imk_navigation_state truth = imki_drift_truth(c->trajectory, begin, 0.0);
-    r->start =
-        imki_drift_displaced(&truth, s->initial_sigma, c->slaved, given, c->random, r->number);
+    r->start = imki_drift_displaced(&truth, s, c->random, r->number);
     return IMK_OK;
 }
 
@@ -273,7 +271,7 @@ static void finish_alignment(crew *c)
         const imk_vector3 force = {{sum[3] / count, sum[4] / count, sum[5] / count}};
         const imk_geodetic place = imk_geodetic_from_ecef(r->start.position);
         imk_matrix3 c_nb = imk_matrix3_identity();
-        r->gone = imki_alignment_of_means(force, rate, &c_nb) != IMK_OK;
+        r->gone = imki_alignment_of_means(force, rate, place, &c_nb) != IMK_OK;
         r->start.attitude = imk_quaternion_from_matrix(
             imk_matrix3_multiply(imk_ned_axes(place.latitude, place.longitude), c_nb));
     }
@@ -352,7 +350,7 @@ static void look(const crew *c, uint64_t row, size_t stride, double *errors)
         const double time = imk_simulator_true_time(r->simulator, (int64_t)row);
         const imk_navigation_state truth = imki_drift_truth(c->trajectory, time, 0.0);
         const imk_navigation_state state = state_of(c, i);
-        imki_drift_errors(&state, &truth, out);
+        imki_drift_errors(&state, &truth, c->settings->attitude_errors, out);
     }
 }
 

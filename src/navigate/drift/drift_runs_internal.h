@@ -24,13 +24,13 @@ void imki_drift_heights(const imk_trajectory *trajectory, size_t count, const si
 imk_navigation_state imki_drift_truth(const imk_trajectory *trajectory, double time, double stamp);
 
 /* Truth with the initial errors of a run: position and velocity, and attitude where it is given.
- * With `slaved` they are horizontal. */
+ * With a slaved vertical they are horizontal. */
 imk_navigation_state imki_drift_displaced(const imk_navigation_state *truth,
-                                          const double sigma[IMK_DRIFT_STATES], bool slaved,
-                                          bool attitude, imk_random random, uint32_t run);
+                                          const imk_drift_settings *settings, imk_random random,
+                                          uint32_t run);
 
 /* The nine errors of an estimate, in north-east-down axes at the true place. */
 void imki_drift_errors(const imk_navigation_state *estimate, const imk_navigation_state *truth,
-                       double errors[IMK_DRIFT_STATES]);
+                       imk_attitude_errors stated, double errors[IMK_DRIFT_STATES]);
 
 #endif

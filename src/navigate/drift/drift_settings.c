@@ -90,6 +90,9 @@ static imk_status check_numbers(const imk_drift_settings *s, imk_error *error)
         return refuse(error, "alignment", (double)s->alignment, "\"given\" or \"self\"");
     if (s->alignment == IMK_ALIGNED_SELF && !(s->alignment_time >= 1.0 && s->alignment_time <= 1e7))
         return refuse(error, "alignment_time", s->alignment_time, "1 s to 1e7 s");
+    if (s->attitude_errors != IMK_ATTITUDE_LOCAL && s->attitude_errors != IMK_ATTITUDE_EARTH)
+        return refuse(error, "attitude_errors", (double)s->attitude_errors,
+                      "\"local\" or \"earth\"");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
         if (!(s->initial_sigma[i] >= 0.0 && s->initial_sigma[i] <= 1e9)) {
             const imk_status status = refuse(error, "initial_sigma", s->initial_sigma[i],

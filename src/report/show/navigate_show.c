@@ -95,7 +95,7 @@ static void show_last(const imk_navigate_log *n, imk_result *result)
 
 static void show_data(const imk_navigate_log *n, const char *name, imk_result *result)
 {
-    const imk_zero_velocity_counts *c = &n->counts;
+    const imk_navigation_filter_counts *c = &n->counts;
     show_inputs(n, name, result);
     imk_result_object(result, "result");
     show_start(n, result);
@@ -306,7 +306,7 @@ static void show_page(const imk_navigate_log *n, const char *name, imk_result *r
 
 static void show_rest(const imk_navigate_log *n, imk_result *result)
 {
-    const imk_zero_velocity_counts *c = &n->counts;
+    const imk_navigation_filter_counts *c = &n->counts;
     show_end_attitude(n, result);
     show_drift(n, 0, result);
     if (c->accepted + c->refused > 0)

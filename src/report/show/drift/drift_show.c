@@ -120,6 +120,8 @@ static void show_inputs(const imk_drift_models *r, const imk_drift_shown *shown,
     imk_result_quantity(result, "rate", s->rate, "Hz");
     imk_result_text(result, "vertical", s->vertical == IMK_VERTICAL_FREE ? "free" : "slaved");
     imk_result_text(result, "aligned", s->alignment == IMK_ALIGNED_SELF ? "self" : "given");
+    imk_result_text(result, "attitude_errors",
+                    s->attitude_errors == IMK_ATTITUDE_EARTH ? "earth" : "local");
     imk_result_array(result, "initial_sigma");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
         imk_result_quantity(result, NULL, s->initial_sigma[i], units[i / 3]);
@@ -164,11 +166,14 @@ static void conditions_of(const imk_drift_models *r, const char *motion, imki_te
     else
         imki_text_add(text, "At rest at %.4g deg %s", fabs(s->latitude) / imk_unit_of("deg").scale,
                       s->latitude < 0 ? "south" : "north");
-    imki_text_add(text, "; attitude %s at the start, height %s.",
+    imki_text_add(text, "; attitude %s at the start, height %s.%s",
                   s->alignment == IMK_ALIGNED_SELF ? "found by the unit itself"
                   : s->initial_sigma[6] + s->initial_sigma[7] + s->initial_sigma[8] > 0 ? "given"
                                                                                         : "true",
-                  s->vertical == IMK_VERTICAL_FREE ? "free" : "held by other means");
+                  s->vertical == IMK_VERTICAL_FREE ? "free" : "held by other means",
+                  s->attitude_errors == IMK_ATTITUDE_EARTH
+                      ? " Tilt and heading are errors against Earth-fixed axes."
+                      : "");
 }
 
 static void show_title(const imk_drift_models *r, const imk_drift_shown *shown, imk_result *result)

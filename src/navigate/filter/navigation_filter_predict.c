@@ -17,7 +17,7 @@
  * times that of the integral. What else is left out is of order (h/R) g and (h |w|)^4: nothing for
  * steps of a second. The integral of the gyros' noise
  * since a stand began, s, has with the errors the covariance J <- Phi J + Gamma N^2. */
-#include "zero_velocity_internal.h"
+#include "navigation_filter_internal.h"
 
 #include "imukit/earth.h"
 #include "imukit/elementary.h"
@@ -55,7 +55,7 @@ static imk_vector3 upward(imk_vector3 gravity)
     return imk_vector3_scale(gravity, -1.0 / imk_vector3_norm(gravity));
 }
 
-static void error_matrix(const imk_zero_velocity *f, imk_vector3 force, square m)
+static void error_matrix(const imk_navigation_filter *f, imk_vector3 force, square m)
 {
     const imk_vector3 earth = {{0.0, 0.0, IMK_EARTH_RATE}};
     const imk_vector3 place = f->strapdown.state.position;
@@ -96,8 +96,8 @@ static void add_noise(square m, square m2, const double b[ERRORS], double s, dou
             noise[i][j] += weight * a[i] * a[j];
 }
 
-static void make_step(const imk_zero_velocity *f, double h, const imk_matrix3 *c, imk_vector3 force,
-                      step_matrices *step)
+static void make_step(const imk_navigation_filter *f, double h, const imk_matrix3 *c,
+                      imk_vector3 force, step_matrices *step)
 {
     const imk_triad_errors *triad[2] = {&f->settings.gyro, &f->settings.accel};
     square m, m2, m3, integral;
@@ -134,13 +134,18 @@ typedef struct part_step {
     double decay, noise[3];
 } part_step;
 
+double imki_bias_part_decay(const imk_bias_part *part, double h)
+{
+    const double t = part->correlation_time;
+    return t > 0.0 ? 1.0 + imk_expm1(-h / t) : 1.0;
+}
+
 static part_step make_part(const imk_bias_part *part, double h)
 {
-    part_step step = {.decay = 1.0};
+    part_step step = {.decay = imki_bias_part_decay(part, h)};
     const double t = part->correlation_time;
     if (t > 0.0) {
         const double lost = -imk_expm1(-h / t);
-        step.decay = 1.0 - lost;
         for (int i = 0; i < 3; i++)
             step.noise[i] = part->sigma[i] * part->sigma[i] * lost * (2.0 - lost);
     } else {
@@ -151,8 +156,8 @@ static part_step make_part(const imk_bias_part *part, double h)
 }
 
 /* One vector of all errors by the step: `stride` apart, in place. */
-static void advance(const imk_zero_velocity *f, const step_matrices *step, const part_step *parts,
-                    double *x, size_t stride)
+static void advance(const imk_navigation_filter *f, const step_matrices *step,
+                    const part_step *parts, double *x, size_t stride)
 {
     double now[ERRORS], bias[2][3] = {{0}};
     for (int i = 0; i < ERRORS; i++)
@@ -187,7 +192,7 @@ static void hold_vertical(imk_vector3 up, double *x, size_t stride)
     }
 }
 
-static void make_symmetric(imk_zero_velocity *f)
+static void make_symmetric(imk_navigation_filter *f)
 {
     const size_t n = f->states;
     for (size_t i = 0; i < n; i++)
@@ -198,7 +203,7 @@ static void make_symmetric(imk_zero_velocity *f)
 }
 
 /* Parts of the biases: their noise, and the decay of their estimates. */
-static void advance_parts(imk_zero_velocity *f, const part_step *parts)
+static void advance_parts(imk_navigation_filter *f, const part_step *parts)
 {
     size_t state = ERRORS;
     for (int sensor = 0; sensor < 2; sensor++) {
@@ -212,8 +217,8 @@ static void advance_parts(imk_zero_velocity *f, const part_step *parts)
     }
 }
 
-static void advance_cross(imk_zero_velocity *f, const step_matrices *step, const part_step *parts,
-                          imk_vector3 up)
+static void advance_cross(imk_navigation_filter *f, const step_matrices *step,
+                          const part_step *parts, imk_vector3 up)
 {
     for (size_t axis = 0; axis < 3; axis++) {
         const double n = f->settings.gyro.white[axis];
@@ -225,7 +230,7 @@ static void advance_cross(imk_zero_velocity *f, const step_matrices *step, const
     }
 }
 
-void imki_zero_velocity_propagate(imk_zero_velocity *f)
+void imki_navigation_filter_propagate(imk_navigation_filter *f)
 {
     const double h = f->span;
     if (!(h > 0.0))

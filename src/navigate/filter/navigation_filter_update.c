@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Updates of the zero-velocity filter. What is measured is z = H x + v, with noise v of covariance
+/* Updates of the navigation filter. What is measured is z = H x + v, with noise v of covariance
  * R and, for the rotation, of covariance J with the errors x, since the gyros' noise that the mean
  * rate has is in the attitude already [SIMON2006, 7.1]:
  *
@@ -10,7 +10,7 @@
  * Zero velocity: z is the velocity, less what quantization of the integrated force adds to its
  * noise. Zero rotation: z is the mean over the stand of what the gyros read beyond biases and the
  * Earth's rate, which is b_g - C^T [w x] e and noise. */
-#include "zero_velocity_internal.h"
+#include "navigation_filter_internal.h"
 
 #include "imukit/distributions.h"
 #include "imukit/earth.h"
@@ -36,7 +36,7 @@ static bool invert(size_t rows, double s[3][3], double inverse[3][3])
 }
 
 /* out (states x rows) = a (states x states, or its transpose) H^T */
-static void times_measured(const imk_zero_velocity *f, const double *a, size_t rows,
+static void times_measured(const imk_navigation_filter *f, const double *a, size_t rows,
                            const double *h, double *out)
 {
     const size_t n = f->states;
@@ -50,7 +50,7 @@ static void times_measured(const imk_zero_velocity *f, const double *a, size_t r
 }
 
 /* The errors x, out of the state. */
-static void take_out(imk_zero_velocity *f, const double *x)
+static void take_out(imk_navigation_filter *f, const double *x)
 {
     imk_navigation_state *s = &f->strapdown.state;
     imk_vector3 turn;
@@ -73,7 +73,7 @@ static void take_out(imk_zero_velocity *f, const double *x)
 }
 
 /* P by Joseph's form; gain and cross are states x rows. */
-static void update_covariance(imk_zero_velocity *f, size_t rows, const double *h,
+static void update_covariance(imk_navigation_filter *f, size_t rows, const double *h,
                               const double *gain, double noise[3][3], const double *cross)
 {
     enum { STATES_MAX = ERRORS + 6 * IMK_BIAS_PARTS_MAX };
@@ -115,12 +115,12 @@ static void update_covariance(imk_zero_velocity *f, size_t rows, const double *h
         }
 }
 
-bool imki_zero_velocity_measure(imk_zero_velocity *f, size_t rows, const double *h,
-                                const double z[3], double noise[3][3], const double *cross)
+bool imki_navigation_filter_measure(imk_navigation_filter *f, size_t rows, const double *h,
+                                    const double z[3], double noise[3][3], const double *cross)
 {
     enum { STATES_MAX = ERRORS + 6 * IMK_BIAS_PARTS_MAX };
     const size_t n = f->states;
-    double ph[3 * STATES_MAX], gain[3 * STATES_MAX], x[STATES_MAX], s[3][3], inverse[3][3];
+    double ph[3 * STATES_MAX], x[STATES_MAX], s[3][3], inverse[3][3], *gain = f->gain;
     times_measured(f, f->covariance, rows, h, ph);
     for (size_t i = 0; i < n * rows && cross != NULL; i++)
         ph[i] += cross[i];
@@ -156,20 +156,22 @@ bool imki_zero_velocity_measure(imk_zero_velocity *f, size_t rows, const double 
             x[i] += gain[i * rows + r] * z[r];
         }
     }
+    f->rows = rows;
+    memcpy(f->h, h, rows * n * sizeof *h);
     update_covariance(f, rows, h, gain, noise, cross);
     take_out(f, x);
     return true;
 }
 
 /* Axes of measurement: north, east, and down unless the vertical is held. */
-static size_t measured_axes(const imk_zero_velocity *f, imk_matrix3 *axes)
+static size_t measured_axes(const imk_navigation_filter *f, imk_matrix3 *axes)
 {
     const imk_geodetic place = imk_geodetic_from_ecef(f->strapdown.state.position);
     *axes = imk_ned_axes(place.latitude, place.longitude);
     return f->settings.hold_height ? 2 : 3;
 }
 
-static bool zero_velocity(imk_zero_velocity *f)
+static bool zero_velocity(imk_navigation_filter *f)
 {
     double h[3 * (ERRORS + 6 * IMK_BIAS_PARTS_MAX)] = {0}, z[3] = {0}, noise[3][3];
     imk_matrix3 axes;
@@ -189,11 +191,11 @@ static bool zero_velocity(imk_zero_velocity *f)
             }
         }
     }
-    return imki_zero_velocity_measure(f, rows, h, z, noise, NULL);
+    return imki_navigation_filter_measure(f, rows, h, z, noise, NULL);
 }
 
 /* The integral of the gyros' noise, s, is the measurement's noise times the time of the stand. */
-static bool zero_rotation(imk_zero_velocity *f)
+static bool zero_rotation(imk_navigation_filter *f)
 {
     enum { STATES_MAX = ERRORS + 6 * IMK_BIAS_PARTS_MAX };
     double h[3 * STATES_MAX] = {0}, cross[3 * STATES_MAX] = {0}, z[3], noise[3][3] = {{0}};
@@ -213,25 +215,25 @@ static bool zero_rotation(imk_zero_velocity *f)
     }
     for (size_t i = 0; i < 3 * n; i++)
         cross[i] = f->cross[i] / time;
-    return imki_zero_velocity_measure(f, 3, h, z, noise, cross);
+    return imki_navigation_filter_measure(f, 3, h, z, noise, cross);
 }
 
-bool imk_zero_velocity_update(imk_zero_velocity *filter)
+bool imk_navigation_filter_stand(imk_navigation_filter *filter)
 {
-    imki_zero_velocity_propagate(filter);
+    imki_navigation_filter_propagate(filter);
     bool good = true;
     if (filter->settings.rotation_sigma > 0.0 && filter->stand > 0.0)
         good = zero_rotation(filter);
     good = zero_velocity(filter) && good;
-    imk_zero_velocity_moved(filter);
+    imk_navigation_filter_moved(filter);
     return good;
 }
 
-bool imk_zero_velocity_fix(imk_zero_velocity *filter, imk_geodetic place, imk_vector3 sigma)
+bool imk_navigation_filter_fix(imk_navigation_filter *filter, imk_geodetic place, imk_vector3 sigma)
 {
     double h[3 * (ERRORS + 6 * IMK_BIAS_PARTS_MAX)] = {0}, z[3], noise[3][3] = {{0}};
     const size_t n = filter->states;
-    imki_zero_velocity_propagate(filter);
+    imki_navigation_filter_propagate(filter);
     const imk_matrix3 axes = imk_ned_axes(place.latitude, place.longitude);
     const imk_vector3 off =
         imk_vector3_subtract(filter->strapdown.state.position, imk_ecef_from_geodetic(place));
@@ -250,8 +252,8 @@ bool imk_zero_velocity_fix(imk_zero_velocity *filter, imk_geodetic place, imk_ve
     }
     if (rows == 0)
         return true;
-    const bool good = imki_zero_velocity_measure(filter, rows, h, z, noise, NULL);
+    const bool good = imki_navigation_filter_measure(filter, rows, h, z, noise, NULL);
     /* The noise since the stand began is now in other errors. */
-    imk_zero_velocity_moved(filter);
+    imk_navigation_filter_moved(filter);
     return good;
 }

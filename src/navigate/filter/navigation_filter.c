@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The zero-velocity filter: its memory and start, and a sample's way through the mechanisation.
- */
-#include "zero_velocity_internal.h"
+/* The navigation filter: its memory and start, and a sample's way through the mechanisation. */
+#include "navigation_filter_internal.h"
 
 #include "base/refuse_internal.h"
 #include "base/workspace_internal.h"
@@ -11,7 +10,7 @@
 
 enum { COOKIE = 0x5A0FEED1, ERRORS = IMK_NAVIGATION_ERRORS };
 
-void imk_zero_velocity_default(imk_zero_velocity_settings *settings)
+void imk_navigation_filter_default(imk_navigation_filter_settings *settings)
 {
     memset(settings, 0, sizeof *settings);
     settings->cookie = COOKIE;
@@ -21,15 +20,16 @@ void imk_zero_velocity_default(imk_zero_velocity_settings *settings)
     settings->false_alarm = 1e-4;
 }
 
-static size_t state_count(const imk_zero_velocity_settings *settings)
+static size_t state_count(const imk_navigation_filter_settings *settings)
 {
     return ERRORS + 3 * (settings->gyro.part_count + settings->accel.part_count);
 }
 
-size_t imk_zero_velocity_size(const imk_zero_velocity_settings *settings)
+size_t imk_navigation_filter_size(const imk_navigation_filter_settings *settings)
 {
     const size_t n = state_count(settings);
-    return sizeof(imk_zero_velocity) + (2 * n * n + 3 * n) * sizeof(double) + IMKI_ALIGNMENT_SLACK;
+    return sizeof(imk_navigation_filter) + (2 * n * n + 9 * n) * sizeof(double) +
+           IMKI_ALIGNMENT_SLACK;
 }
 
 static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
@@ -66,11 +66,11 @@ static imk_status check_triad(const imk_triad_errors *triad, const char *field, 
     return IMK_OK;
 }
 
-static imk_status check(const imk_zero_velocity_settings *s, imk_error *error)
+static imk_status check(const imk_navigation_filter_settings *s, imk_error *error)
 {
     if (s->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "zero_velocity", "",
-                             "start from imk_zero_velocity_default()");
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "navigation_filter", "",
+                             "start from imk_navigation_filter_default()");
     imk_status status = check_triad(&s->gyro, "gyro", error);
     if (status == IMK_OK)
         status = check_triad(&s->accel, "accel", error);
@@ -110,7 +110,8 @@ static imk_matrix3 axes_at(const imk_navigation_state *state)
 }
 
 /* A block of nine navigation errors, north-east-down, into Earth-fixed axes. */
-static void put_block(imk_zero_velocity *f, const imk_matrix3 *axes, size_t block, double ned[3][3])
+static void put_block(imk_navigation_filter *f, const imk_matrix3 *axes, size_t block,
+                      double ned[3][3])
 {
     for (size_t i = 0; i < 3; i++)
         for (size_t j = 0; j < 3; j++) {
@@ -122,9 +123,9 @@ static void put_block(imk_zero_velocity *f, const imk_matrix3 *axes, size_t bloc
         }
 }
 
-static void start_covariance(imk_zero_velocity *f)
+static void start_covariance(imk_navigation_filter *f)
 {
-    const imk_zero_velocity_settings *s = &f->settings;
+    const imk_navigation_filter_settings *s = &f->settings;
     const imk_triad_errors *triad[2] = {&s->gyro, &s->accel};
     const imk_matrix3 axes = axes_at(&f->strapdown.state);
     const size_t n = f->states;
@@ -161,24 +162,27 @@ static void start_covariance(imk_zero_velocity *f)
     }
 }
 
-imk_status imk_zero_velocity_start(const imk_zero_velocity_settings *settings,
-                                   const imk_navigation_state *start, imk_zero_velocity **filter,
-                                   void *memory, size_t memory_size, imk_error *error)
+imk_status imk_navigation_filter_start(const imk_navigation_filter_settings *settings,
+                                       const imk_navigation_state *start,
+                                       imk_navigation_filter **filter, void *memory,
+                                       size_t memory_size, imk_error *error)
 {
     const imk_status status = check(settings, error);
     if (status != IMK_OK)
         return status;
-    const size_t need = imk_zero_velocity_size(settings);
+    const size_t need = imk_navigation_filter_size(settings);
     if (!memory || memory_size < need)
-        return imk_error_set(error, IMK_ERROR_WORKSPACE, "zero_velocity", "",
-                             "provide imk_zero_velocity_size() bytes");
-    imk_zero_velocity *f = (void *)imki_align(memory);
+        return imk_error_set(error, IMK_ERROR_WORKSPACE, "navigation_filter", "",
+                             "provide imk_navigation_filter_size() bytes");
+    imk_navigation_filter *f = (void *)imki_align(memory);
     memset(f, 0, need - IMKI_ALIGNMENT_SLACK);
     f->settings = *settings;
     f->states = state_count(settings);
     f->covariance = (double *)(void *)(f + 1);
     f->scratch = f->covariance + f->states * f->states;
     f->cross = f->scratch + f->states * f->states;
+    f->h = f->cross + 3 * f->states;
+    f->gain = f->h + 3 * f->states;
     f->parts[IMKI_GYRO_PART] = settings->gyro.part_count;
     f->parts[IMKI_ACCEL_PART] = settings->accel.part_count;
     f->strapdown = imk_strapdown_start(start);
@@ -191,8 +195,8 @@ imk_status imk_zero_velocity_start(const imk_zero_velocity_settings *settings,
     return IMK_OK;
 }
 
-void imk_zero_velocity_step(imk_zero_velocity *f, double dt, imk_vector3 angle,
-                            imk_vector3 velocity)
+void imk_navigation_filter_step(imk_navigation_filter *f, double dt, imk_vector3 angle,
+                                imk_vector3 velocity)
 {
     const imk_vector3 *gyro = &f->bias_sum[IMKI_GYRO_PART], *accel = &f->bias_sum[IMKI_ACCEL_PART];
     for (int i = 0; i < 3; i++) {
@@ -215,31 +219,42 @@ void imk_zero_velocity_step(imk_zero_velocity *f, double dt, imk_vector3 angle,
     f->span += dt;
     /* An interval short of the step by rounding is not continued. */
     if (f->span > f->settings.step - 0.5 * dt)
-        imki_zero_velocity_propagate(f);
+        imki_navigation_filter_propagate(f);
 }
 
-void imk_zero_velocity_moved(imk_zero_velocity *filter)
+void imk_navigation_filter_moved(imk_navigation_filter *filter)
 {
     /* Noise in the covariance is counted from here too. */
-    imki_zero_velocity_propagate(filter);
+    imki_navigation_filter_propagate(filter);
     filter->stand = 0.0;
     filter->stand_turn = (imk_vector3){{0}};
     memset(&filter->stand_attitude, 0, sizeof filter->stand_attitude);
     memset(filter->cross, 0, 3 * filter->states * sizeof *filter->cross);
 }
 
-imk_navigation_state imk_zero_velocity_state(const imk_zero_velocity *filter)
+imk_navigation_state imk_navigation_filter_state(const imk_navigation_filter *filter)
 {
     return filter->strapdown.state;
 }
 
-imk_zero_velocity_counts imk_zero_velocity_counted(const imk_zero_velocity *filter)
+imk_navigation_filter_counts imk_navigation_filter_counted(const imk_navigation_filter *filter)
 {
     return filter->counts;
 }
 
+imki_filter_gain imki_navigation_filter_gain(const imk_navigation_filter *f)
+{
+    return (imki_filter_gain){f->states, f->rows, f->h, f->gain};
+}
+
+const double *imki_navigation_filter_covariance(imk_navigation_filter *f)
+{
+    imki_navigation_filter_propagate(f);
+    return f->covariance;
+}
+
 /* Trace of the covariance of a sensor's biases, sums of their parts. */
-static double bias_variance(const imk_zero_velocity *f, int sensor)
+static double bias_variance(const imk_navigation_filter *f, int sensor)
 {
     const size_t n = f->states, parts = f->parts[sensor];
     const size_t first = ERRORS + (sensor == IMKI_GYRO_PART ? 0 : 3 * f->parts[IMKI_GYRO_PART]);
@@ -252,7 +267,7 @@ static double bias_variance(const imk_zero_velocity *f, int sensor)
 }
 
 /* An attitude error turns gravity by at most g times itself. */
-imk_rest_readings imk_zero_velocity_rest(const imk_zero_velocity *f)
+imk_rest_readings imk_navigation_filter_rest(const imk_navigation_filter *f)
 {
     const imk_vector3 gravity = imk_gravity_ecef(f->strapdown.state.position);
     const double g2 = imk_vector3_dot(gravity, gravity);
@@ -271,9 +286,21 @@ imk_rest_readings imk_zero_velocity_rest(const imk_zero_velocity *f)
     return rest;
 }
 
-void imk_zero_velocity_get(imk_zero_velocity *f, imk_zero_velocity_estimate *estimate)
+/* Attitude errors psi to those of what is displayed, phi = psi - turn dr: rows, then columns. */
+static void display_attitude(imk_vector3 position, double p[ERRORS][ERRORS])
 {
-    imki_zero_velocity_propagate(f);
+    const imk_matrix3 turn = imk_level_turn(imk_geodetic_from_ecef(position));
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < ERRORS; j++)
+            p[6 + i][j] -= turn.m[i][0] * p[0][j] + turn.m[i][1] * p[1][j];
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < ERRORS; j++)
+            p[j][6 + i] -= turn.m[i][0] * p[j][0] + turn.m[i][1] * p[j][1];
+}
+
+void imk_navigation_filter_get(imk_navigation_filter *f, imk_navigation_filter_estimate *estimate)
+{
+    imki_navigation_filter_propagate(f);
     const imk_matrix3 axes = axes_at(&f->strapdown.state);
     const size_t n = f->states;
     estimate->state = f->strapdown.state;
@@ -287,6 +314,7 @@ void imk_zero_velocity_get(imk_zero_velocity *f, imk_zero_velocity_estimate *est
                             sum += axes.m[k][i] * f->covariance[(a + k) * n + b + l] * axes.m[l][j];
                     estimate->covariance[a + i][b + j] = sum;
                 }
+    display_attitude(f->strapdown.state.position, estimate->covariance);
     estimate->gyro_bias = f->bias_sum[IMKI_GYRO_PART];
     estimate->accel_bias = f->bias_sum[IMKI_ACCEL_PART];
     imk_vector3 *sigma[2] = {&estimate->gyro_bias_sigma, &estimate->accel_bias_sigma};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/** @file zero_velocity.h
+/** @file navigation_filter.h
  *  Navigation with zero-velocity updates: a strapdown mechanisation whose errors are estimated and
- *  corrected whenever the unit is known to be stationary, and a detector of these times.
+ *  corrected whenever something else is known: that the unit stands, or where it is.
  *
  *  The filter is a closed-loop Kalman filter in Earth-fixed axes. Its states are nine errors of
  *  navigation (position, velocity, attitude) and, per axis of gyro and accelerometer, a bias that
@@ -11,13 +11,14 @@
  *  navigation.
  *
  *  Every update is tested: if its innovation is too unlikely (chi-square), the update is refused
- *  and counted. Equations: docs/theory/zero-velocity.md. */
-#ifndef IMUKIT_ZERO_VELOCITY_H
-#define IMUKIT_ZERO_VELOCITY_H
+ *  and counted. Equations: docs/theory/navigation-filter.md. */
+#ifndef IMUKIT_NAVIGATION_FILTER_H
+#define IMUKIT_NAVIGATION_FILTER_H
 
 #include "imukit/alignment.h"
 #include "imukit/model.h"
 #include "imukit/navigate.h"
+#include "imukit/standstill.h"
 
 IMK_BEGIN_C
 
@@ -39,10 +40,10 @@ typedef struct imk_triad_errors {
     imk_bias_part part[IMK_BIAS_PARTS_MAX];
 } imk_triad_errors;
 
-/** Start from imk_zero_velocity_default(). */
-typedef struct imk_zero_velocity_settings {
+/** Start from imk_navigation_filter_default(). */
+typedef struct imk_navigation_filter_settings {
     uint32_t cookie;
-    imk_triad_errors gyro, accel; /**< imk_zero_velocity_describe() fills them from a model */
+    imk_triad_errors gyro, accel; /**< imk_navigation_filter_describe() fills them from a model */
     bool hold_height;             /**< the height is held at that of the start */
     int samples; /**< samples of the coning and sculling algorithms, 1 … 4: imk_strapdown.samples */
     double step;           /**< shortest time step of the covariance [s]; 0.001 … 10 */
@@ -62,11 +63,11 @@ typedef struct imk_zero_velocity_settings {
      *  accelerometer x, y, z [s^2/m]. Zeros: no self-alignment. */
     double alignment[3][6];
     double alignment_time;
-} imk_zero_velocity_settings;
+} imk_navigation_filter_settings;
 
 /** Perfect sensors, free vertical, three samples, steps of 0.5 s, velocity sigma 10 mm/s, rotation
  *  not used, false alarm 1e-4. */
-IMK_API void imk_zero_velocity_default(imk_zero_velocity_settings *settings);
+IMK_API void imk_navigation_filter_default(imk_navigation_filter_settings *settings);
 
 /** Fill gyro and accel from a model with three axes of each.
  *
@@ -80,10 +81,10 @@ IMK_API void imk_zero_velocity_default(imk_zero_velocity_settings *settings);
  *  @param dt          sample interval [s], > 0
  *  @param rate,force  mean readings at the start, body axes [rad/s], [m/s^2]
  *  @return IMK_ERROR_UNSUPPORTED (a triad is missing or has not three axes) */
-IMK_API imk_status imk_zero_velocity_describe(const imk_model *model, double dt, imk_vector3 rate,
-                                              imk_vector3 force,
-                                              imk_zero_velocity_settings *settings,
-                                              imk_error *error);
+IMK_API imk_status imk_navigation_filter_describe(const imk_model *model, double dt,
+                                                  imk_vector3 rate, imk_vector3 force,
+                                                  imk_navigation_filter_settings *settings,
+                                                  imk_error *error);
 
 /** Fill `alignment`, and the part of the alignment's covariance that the biases do not explain, for
  *  a unit that aligned itself: e_N = -a_E/g, e_E = a_N/g, e_D = -w_E/(W cos L) + a_E tan(L)/g, with
@@ -93,22 +94,23 @@ IMK_API imk_status imk_zero_velocity_describe(const imk_model *model, double dt,
  *  fine. Call it after gyro and accel are filled.
  *  @param heading  false: the heading in `alignment` was given, not found: e_D is independent
  *  @return IMK_ERROR_NO_CONVERGENCE, IMK_ERROR_NOT_FINITE (the covariance is not valid) */
-IMK_API imk_status imk_zero_velocity_aligned(const imk_alignment_result *alignment,
-                                             imk_alignment_method method, bool heading,
-                                             double alignment_time,
-                                             imk_zero_velocity_settings *settings);
+IMK_API imk_status imk_navigation_filter_aligned(const imk_alignment_result *alignment,
+                                                 imk_alignment_method method, bool heading,
+                                                 double alignment_time,
+                                                 imk_navigation_filter_settings *settings);
 
 /** Estimate of the filter. */
-typedef struct imk_zero_velocity_estimate {
+typedef struct imk_navigation_filter_estimate {
     imk_navigation_state state;
-    /** Of position, velocity and attitude errors; north, east, down at the estimated place. */
+    /** Of position, velocity and attitude errors; north, east, down at the estimated place. Those
+     *  of attitude are of what is displayed (imk_displayed_attitude_error()). */
     double covariance[IMK_NAVIGATION_ERRORS][IMK_NAVIGATION_ERRORS];
     imk_vector3 gyro_bias, accel_bias;             /**< sums of the parts; body axes */
     imk_vector3 gyro_bias_sigma, accel_bias_sigma; /**< 1 sigma of these biases */
-} imk_zero_velocity_estimate;
+} imk_navigation_filter_estimate;
 
 /** Counts of updates. */
-typedef struct imk_zero_velocity_counts {
+typedef struct imk_navigation_filter_counts {
     uint64_t accepted, refused;
     uint64_t refused_in_row; /**< latest updates refused without a break; if this keeps growing, the
                                 filter has diverged */
@@ -116,103 +118,49 @@ typedef struct imk_zero_velocity_counts {
     uint64_t degrees;        /**< degrees of freedom of all tested updates together */
     double chi_square; /**< sum of their squared normalised innovations; near `degrees` if the model
                           describes the unit */
-} imk_zero_velocity_counts;
+} imk_navigation_filter_counts;
 
-/** A filter in progress: opaque memory of imk_zero_velocity_size() bytes, given by the caller. */
-typedef struct imk_zero_velocity imk_zero_velocity;
+/** A filter in progress: opaque memory of imk_navigation_filter_size() bytes, given by the caller.
+ */
+typedef struct imk_navigation_filter imk_navigation_filter;
 /** Bytes for a filter. */
-IMK_API size_t imk_zero_velocity_size(const imk_zero_velocity_settings *settings);
+IMK_API size_t imk_navigation_filter_size(const imk_navigation_filter_settings *settings);
 /** Start at a state.
  *  @return IMK_ERROR_UNINITIALISED, IMK_ERROR_RANGE (a sigma that is negative or not finite, …:
  *          error.field), IMK_ERROR_WORKSPACE */
-IMK_API imk_status imk_zero_velocity_start(const imk_zero_velocity_settings *settings,
-                                           const imk_navigation_state *start,
-                                           imk_zero_velocity **filter, void *memory,
-                                           size_t memory_size, imk_error *error);
+IMK_API imk_status imk_navigation_filter_start(const imk_navigation_filter_settings *settings,
+                                               const imk_navigation_state *start,
+                                               imk_navigation_filter **filter, void *memory,
+                                               size_t memory_size, imk_error *error);
 
 /** Take one sample as read: increments of angle [rad] and velocity [m/s] over dt > 0 [s], body
  *  axes. The function subtracts the estimated biases. */
-IMK_API void imk_zero_velocity_step(imk_zero_velocity *filter, double dt, imk_vector3 angle,
-                                    imk_vector3 velocity);
+IMK_API void imk_navigation_filter_step(imk_navigation_filter *filter, double dt, imk_vector3 angle,
+                                        imk_vector3 velocity);
 /** Update with zero velocity, and with zero rotation if it is used. The unit must have been
- *  stationary since the last update or imk_zero_velocity_moved(). @return false: the update was
+ *  stationary since the last update or imk_navigation_filter_moved(). @return false: the update was
  *  refused */
-IMK_API bool imk_zero_velocity_update(imk_zero_velocity *filter);
+IMK_API bool imk_navigation_filter_stand(imk_navigation_filter *filter);
 /** State that the unit has moved until now: rotation before this moment does not count for the next
  *  update. */
-IMK_API void imk_zero_velocity_moved(imk_zero_velocity *filter);
+IMK_API void imk_navigation_filter_moved(imk_navigation_filter *filter);
 /** Update with a known place, on the axes whose sigma is finite, such as the height of a barometer
  *  only.
  *  @param sigma  1 sigma north, east, down [m], > 0; infinity: not known
  *  @return false: the update was refused */
-IMK_API bool imk_zero_velocity_fix(imk_zero_velocity *filter, imk_geodetic place,
-                                   imk_vector3 sigma);
+IMK_API bool imk_navigation_filter_fix(imk_navigation_filter *filter, imk_geodetic place,
+                                       imk_vector3 sigma);
 
 /** The estimate at the end of the last sample. */
-IMK_API void imk_zero_velocity_get(imk_zero_velocity *filter, imk_zero_velocity_estimate *estimate);
+IMK_API void imk_navigation_filter_get(imk_navigation_filter *filter,
+                                       imk_navigation_filter_estimate *estimate);
 /** The state without covariance, at little cost. */
-IMK_API imk_navigation_state imk_zero_velocity_state(const imk_zero_velocity *filter);
-/** Mean readings of a stationary unit, biases included, body axes; and their 1 sigma, as root sum
- *  of squares of the axes. */
-typedef struct imk_rest_readings {
-    imk_vector3 rate, force; /**< [rad/s], [m/s^2] */
-    double rate_sigma, force_sigma;
-} imk_rest_readings;
+IMK_API imk_navigation_state imk_navigation_filter_state(const imk_navigation_filter *filter);
 /** These readings at present, from the estimated attitude and biases. */
-IMK_API imk_rest_readings imk_zero_velocity_rest(const imk_zero_velocity *filter);
+IMK_API imk_rest_readings imk_navigation_filter_rest(const imk_navigation_filter *filter);
 /** Counts of updates up to now. */
-IMK_API imk_zero_velocity_counts imk_zero_velocity_counted(const imk_zero_velocity *filter);
-
-/* ---- detection of stops
- * ---------------------------------------------------------------------------
- */
-
-enum { IMK_STANDSTILL_FIGURES = 4 };
-
-/** Detects whether the unit is stationary or moves, by four figures of each window of samples: the
- *  scatter of the force, the scatter of the rate, and the distances of the mean force and rate from
- *  those of a stationary unit. Their values at rest, with usual disturbances, are learnt while the
- *  unit is known to be stationary. Steady motion on a straight line shows only by its vibration;
- *  the filter's test of the innovation is a second safeguard. Plain data. */
-typedef struct imk_standstill {
-    double window;      /**< length of a window [s] */
-    double false_alarm; /**< probability that a window at rest is taken for motion */
-    uint64_t learnt;    /**< number of windows learnt */
-    double sum[IMK_STANDSTILL_FIGURES], square_sum[IMK_STANDSTILL_FIGURES];
-    double limit[IMK_STANDSTILL_FIGURES]; /**< set by imk_standstill_ready() */
-    imk_vector3 turn_sum, speed_sum;      /**< of all windows */
-    double time_sum;
-    /** The present window: */
-    size_t count;
-    double time;
-    imk_vector3 turn, speed; /**< sums of the increments */
-    imk_vector3 first_rate, first_force, rate_off, force_off;
-    double rate_square[3], force_square[3]; /**< about the first sample */
-} imk_standstill;
-
-/** Start a detector.
- *  @param window       length of a window [s], > 0, at least four samples; 1 s is usual
- *  @param false_alarm  probability that a window at rest is taken for motion, 0 < … < 1 */
-IMK_API imk_standstill imk_standstill_start(double window, double false_alarm);
-/** Learn from one sample while the unit is known to be stationary. */
-IMK_API void imk_standstill_learn(imk_standstill *detector, double dt, imk_vector3 angle,
-                                  imk_vector3 velocity);
-/** End the learning. Each figure is modelled as a multiple of a chi-square variable with the mean
- *  and variance found; its limit is the quantile of that.
- *  @return IMK_ERROR_TOO_SHORT (fewer than 10 windows) */
-IMK_API imk_status imk_standstill_ready(imk_standstill *detector, imk_error *error);
-
-typedef enum imk_standstill_verdict {
-    IMK_STANDSTILL_UNDECIDED = 0, /**< the window is not full yet */
-    IMK_STANDSTILL_MOVES,
-    IMK_STANDSTILL_STANDS
-} imk_standstill_verdict;
-/** Take one sample; the verdict comes when a window is full.
- *  @param rest  from imk_zero_velocity_rest(), used when the window is full. Four times its sigmas
- *               are added to the limits of the two distances */
-IMK_API imk_standstill_verdict imk_standstill_add(imk_standstill *detector, double dt,
-                                                  imk_vector3 angle, imk_vector3 velocity,
-                                                  const imk_rest_readings *rest);
+IMK_API imk_navigation_filter_counts
+imk_navigation_filter_counted(const imk_navigation_filter *filter);
 
 IMK_END_C
 #endif
