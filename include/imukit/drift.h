@@ -160,8 +160,8 @@ IMK_API size_t imk_drift_runs_workspace_size(const imk_model *model,
  *  `imukit simulate --run`), aligned, and navigated. The bits of a run depend only on model,
  *  settings, seed and its number. With `compensated`, each run draws the error that calibration
  *  left in every known value (normal, with the model's correlations, term IMK_TERM_RESIDUAL).
- * Initial errors are drawn by IMK_TERM_INITIAL, those of height and climb for a free vertical only.
- * docs/theory/monte-carlo.md has the numbers.
+ *  Initial errors are drawn by IMK_TERM_INITIAL, those of height and climb for a free vertical
+ *  only. docs/theory/monte-carlo.md has the numbers.
  *
  *  Self-alignment takes the first alignment_time * rate rows, rounded; a motion has a standstill of
  *  that length before it. The error at a time is that at the end of the last sample that has ended
