@@ -125,6 +125,10 @@ static void put_settings(const imk_drift_settings *s, imk_result *result)
         put_number("alignment time [s]", s->alignment_time, result);
     imk_result_text(result, "attitude errors",
                     s->attitude_errors == IMK_ATTITUDE_EARTH ? "earth" : "local");
+    if (s->gravity_deflection > 0) {
+        put_number("gravity deflection [m/s^2]", s->gravity_deflection, result);
+        put_number("gravity distance [m]", s->gravity_distance, result);
+    }
     imk_result_flag(result, "compensated", s->compensated);
     imk_result_array(result, "initial sigma [m, m/s, rad]");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)

@@ -75,6 +75,23 @@ static int read_initial(const char *name, const char *text, const char *unit, do
     return -1;
 }
 
+static int read_gravity(const drift_options *o, imk_drift_settings *s)
+{
+    if (!(o->deflection >= 0 && o->deflection <= 0.1))
+        return command_misused("--gravity-deflection %g m/s^2: expected 0 to 0.1 m/s^2",
+                               o->deflection);
+    if (!isnan(o->deflection_distance) && o->deflection == 0)
+        return command_misused("--gravity-distance is for --gravity-deflection; add that option");
+    if (!isnan(o->deflection_distance) &&
+        !(o->deflection_distance > 0 && o->deflection_distance <= 1e9))
+        return command_misused("--gravity-distance %g m: expected a length up to 1e9 m",
+                               o->deflection_distance);
+    s->gravity_deflection = o->deflection;
+    if (!isnan(o->deflection_distance))
+        s->gravity_distance = o->deflection_distance;
+    return -1;
+}
+
 static int read_start(const drift_options *o, imk_drift_settings *s)
 {
     if (o->aligned == 1 && o->initial_attitude)
@@ -202,6 +219,8 @@ int drift_scene_open(const drift_options *o, drift_scene *s)
     int code = o->want ? drift_want_parse(o->want, &s->want) : -1;
     if (code < 0)
         code = read_start(o, settings);
+    if (code < 0)
+        code = read_gravity(o, settings);
     if (code < 0 && o->motion)
         code = open_motion(o, s);
     if (code < 0)

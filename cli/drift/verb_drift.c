@@ -41,6 +41,11 @@ static const option navigation_option_table[] = {
      .help = "local (the default): of what is displayed, tilt and heading relative to the local "
              "level at the computed position (beyond 89 deg of latitude the grid heading); earth: "
              "against Earth-fixed axes; --initial-attitude is meant in the same way"},
+    {"gravity-deflection", OPTION_QUANTITY, AT(deflection), .value = "SIGMA", .unit = "m/s^2",
+     .help = "1 sigma of what gravity has beside normal gravity, north and east each, such as "
+             "\"30 ug\"; default 0"},
+    {"gravity-distance", OPTION_QUANTITY, AT(deflection_distance), .value = "LENGTH", .unit = "m",
+     .help = "its correlation distance along the ground; default 20km"},
     {"compensated", OPTION_FLAG, AT(compensated),
      .help = "show also the figures after calibration: known values of the model are taken out, "
              "and their uncertainty stays"},
@@ -278,6 +283,7 @@ static int run(int count, char **words)
                        .rate = missing,
                        .align_time = missing,
                        .latitude = missing,
+                       .deflection_distance = missing,
                        .seed = {.value = 1}};
     work w = {.o = &o};
     int code = options_parse(&drift_verb, count, words, &o, w.name);

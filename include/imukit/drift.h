@@ -76,6 +76,11 @@ typedef struct imk_drift_settings {
                                                of attitude are used for IMK_ALIGNED_GIVEN only, and
                                                are in the sense of `attitude_errors` */
     imk_attitude_errors attitude_errors;
+    /** 1 sigma of what gravity has beside normal gravity across the vertical, north and east each
+     *  [m/s^2]; 0 … 0.1, default 0. 25 to 50 ug, 5 to 10 arc seconds, are usual. */
+    double gravity_deflection;
+    double gravity_distance; /**< its correlation distance along the ground [m]: a Gauss-Markov
+                                process of first order; default 20 km. 0: constant, as at rest */
     bool compensated;
     size_t time_count;
     const double *time; /**< times at which errors are computed, from the start of navigation:

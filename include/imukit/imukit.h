@@ -61,6 +61,7 @@
 #include "imukit/samples.h"
 #include "imukit/simulate.h"
 #include "imukit/spectrum.h"
+#include "imukit/standing_start.h"
 #include "imukit/standstill.h"
 #include "imukit/static_detection.h"
 #include "imukit/status.h"

@@ -138,7 +138,9 @@ static void move_elements(const imki_drift_plan *plan, imki_drift_part *part,
     double weight[IMKI_DRIFT_MOMENTS][IMKI_DRIFT_MOMENTS] = {{0.0}};
     for (size_t i = part->first; i < part->first + part->count; i++) {
         imki_drift_element *element = &plan->element[i];
-        const imki_driver_step *driver = &over[element->driver][step->slot];
+        const bool of_step = plan->column[element->column].kind == IMKI_COLUMN_GRAVITY;
+        const imki_driver_step *driver =
+            of_step ? &step->gravity : &over[element->driver][step->slot];
         if (!is_noise(element)) {
             move_constant(element, step, driver);
             continue;

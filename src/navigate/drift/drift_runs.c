@@ -40,6 +40,7 @@ typedef struct run {
     double interval;            /* of rows in true time [s] */
     double *column[CHANNELS];   /* ROWS each */
     double held[CHANNELS];      /* the row before */
+    double deflection[2];       /* of gravity, north and east, in the row before */
     bool gone;                  /* has left the Earth, or found no attitude */
 } run;
 
@@ -59,6 +60,7 @@ typedef struct crew {
     double start;                  /* of row 0 in the trajectory */
     imk_model *drawn;              /* model of a run with what calibration left */
     double *height, *climb, *time; /* ROWS each */
+    imki_gravity_row *gravity;     /* ROWS; NULL: gravity is normal */
     size_t count;
     double correlation[IMKI_CORRELATION_FACTOR]; /* of what calibration left, factored */
     run run[LANES];
@@ -99,13 +101,19 @@ static size_t piece_count(const imk_drift_settings *settings)
                : 0;
 }
 
+static size_t gravity_size(const imk_drift_settings *settings)
+{
+    return settings->gravity_deflection > 0.0 ? ROWS * sizeof(imki_gravity_row) : 0;
+}
+
 size_t imk_drift_runs_workspace_size(const imk_model *model, const imk_drift_settings *settings)
 {
     const size_t run_size =
         imki_aligned(CHANNELS * ROWS * sizeof(double)) + simulator_size(model, settings);
     return imki_aligned(sizeof(crew)) + imki_aligned(sizeof(imk_model)) +
            imki_aligned(piece_count(settings) * sizeof(imk_trajectory_piece)) +
-           imki_aligned(3 * ROWS * sizeof(double)) + LANES * run_size + IMKI_ALIGNMENT_SLACK;
+           imki_aligned(3 * ROWS * sizeof(double)) + imki_aligned(gravity_size(settings)) +
+           LANES * run_size + IMKI_ALIGNMENT_SLACK;
 }
 
 /* ---- start ---- */
@@ -181,6 +189,8 @@ static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *
     const imk_drift_settings *s = c->settings;
     c->drawn = imki_take(memory, sizeof *c->drawn);
     c->height = imki_take(memory, 3 * ROWS * sizeof(double));
+    if (s->gravity_deflection > 0.0)
+        c->gravity = imki_take(memory, gravity_size(s));
     c->climb = c->height + ROWS;
     c->time = c->climb + ROWS;
     c->kernel = c->random.kernel;
@@ -244,12 +254,18 @@ static void make_block(crew *c, uint64_t first)
         columns[i] = c->run[i].column;
     }
     imki_simulators_next(c->count, simulators, 1, columns);
+    if (c->gravity)
+        imki_gravity_rows(c->settings, c->trajectory, c->start, c->run[0].interval, first, ROWS,
+                          c->gravity);
     for (size_t i = 0; i < c->count; i++) {
         run *r = &c->run[i];
         divide_counts(&c->model->gyro, r->column);
         divide_counts(&c->model->accel, r->column + 3);
         if (c->model->timing.drops.value > 0.0)
             hold_lost(r, first);
+        if (c->gravity)
+            imki_gravity_deflect(c->settings, c->random, r->number, first, ROWS, c->gravity,
+                                 r->deflection, r->column + 3);
     }
 }
 

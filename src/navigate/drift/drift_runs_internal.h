@@ -14,6 +14,23 @@
  * @param factor  of the model's correlations (imki_correlation_factor()); NULL where it has none */
 void imki_drift_residual(imk_model *model, const double *factor, imk_random random, uint32_t run);
 
+/* ---- drift_gravity.c ---- */
+
+/* What the deflection of gravity is read by in a row. */
+typedef struct imki_gravity_row {
+    double north[3], east[3]; /* in body axes */
+    double keep;              /* of the deflection in the row before */
+} imki_gravity_row;
+
+/* Rows first … of a simulation whose row 0 ends at `start` of the trajectory. */
+void imki_gravity_rows(const imk_drift_settings *settings, const imk_trajectory *trajectory,
+                       double start, double interval, uint64_t first, size_t count,
+                       imki_gravity_row *row);
+/* Put it into the forces of these rows. @param deflection  north and east after the row before */
+void imki_gravity_deflect(const imk_drift_settings *settings, imk_random random, uint32_t run,
+                          uint64_t first, size_t count, const imki_gravity_row *row,
+                          double deflection[2], double *const force[3]);
+
 /* ---- drift_truth.c ---- */
 
 /* Height above the ellipsoid [m] and upward velocity [m/s] at `count` increasing times: time k

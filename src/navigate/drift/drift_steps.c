@@ -349,6 +349,7 @@ static void fill_on_motion(const imki_drift_plan *plan, imki_drift_step *step)
 void imki_drift_fill_step(const imki_drift_walk *walk, const imki_drift_plan *plan,
                           imki_drift_step *step)
 {
+    imki_drift_gravity_step(walk->settings, walk->rests, step);
     if (walk->rests)
         fill_at_rest(plan, step);
     else

@@ -127,6 +127,10 @@ static void show_inputs(const imk_drift_models *r, const imk_drift_shown *shown,
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
         imk_result_quantity(result, NULL, s->initial_sigma[i], units[i / 3]);
     imk_result_end(result);
+    if (s->gravity_deflection > 0) {
+        imk_result_quantity(result, "gravity_deflection", s->gravity_deflection, "m/s^2");
+        imk_result_quantity(result, "gravity_distance", s->gravity_distance, "m");
+    }
     if (!r->settings.drift.motion) {
         imk_result_quantity(result, "latitude", s->latitude, "rad");
         imk_result_quantity(result, "height", s->height, "m");

@@ -74,6 +74,8 @@ static void add_value(const imk_drift_case *one, const imk_result *model, size_t
     imki_text text = {.bytes = NULL};
     if (strncmp(name, "initial.", 8) == 0)
         add_initial(&one->settings, name, factor, &text);
+    else if (strcmp(name, "gravity.deflection") == 0) /* a setting, too */
+        imki_text_add(&text, "%.3g ug", one->settings.gravity_deflection * factor / 9.80665e-6);
     else
         imki_drift_term_value(model, name, one->settings.compensated, factor, &text);
     imk_table_add(table, "%s", text.size > 0 ? text.bytes : "");
