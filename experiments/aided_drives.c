@@ -254,10 +254,12 @@ static void run(const imk_model *model, uint64_t seed, uint32_t drive, tally tal
     o.model_name = "model";
     o.hold_height = false;
     o.aids = &aid_source;
+    o.smooth = true;
     imk_navigate_log *n;
     if (imk_navigate_log_run(&log_source, &o, NULL, &n, &error) != IMK_OK)
         stop("navigate", &error);
-    compare(n, n->track, &truth, &tallies[0], &tallies[1]);
+    compare(n, n->filtered, &truth, &tallies[0], &tallies[1]);
+    compare(n, n->track, &truth, &tallies[2], &tallies[3]);
     imk_navigate_log_free(n);
     table_free(&log);
     table_free(&aids);

@@ -27,6 +27,11 @@ static int check_aids(const navigate_options *o)
     if (o->aid && !o->model)
         return command_misused("--aid needs the errors of the sensors; add --model MODEL, one from "
                                "imukit identify or a name from imukit devices");
+    if (o->smooth && !o->model)
+        return command_misused("--smooth needs the errors of the sensors; add --model MODEL, one "
+                               "from imukit identify or a name from imukit devices");
+    if (o->smooth && !isnan(o->still_rotation) && o->still_rotation > 0.0)
+        return command_misused("--smooth cannot be used with --still-rotation: leave one out");
     if (o->aid_interval < 0.0 || o->aid_until < 0.0)
         return command_misused("--aid-interval and --aid-until must not be negative");
     return -1;

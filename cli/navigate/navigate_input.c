@@ -174,6 +174,7 @@ static void take_numbers(const navigate_options *o, imk_navigate_log_settings *s
     s->interval = o->interval;
     s->standard_gravity = o->standard_gravity;
     s->gravity_free = o->gravity_free;
+    s->smooth = o->smooth;
 }
 
 int navigate_parse(const navigate_options *o, imk_model *model, imk_navigate_log_settings *s)

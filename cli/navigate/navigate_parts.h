@@ -17,7 +17,7 @@ typedef struct navigate_options {
     double align, stop, still_velocity, still_rotation, interval, standard_gravity;
     option_integer samples;
     int method, vertical; /* method -1: not given */
-    bool json, strict, gravity_free;
+    bool json, strict, gravity_free, smooth;
 } navigate_options;
 
 /* What is asked. @param model  the settings have it when it is asked for

@@ -61,6 +61,8 @@ static const option navigate_option_table[] = {
     {"gravity-free", OPTION_FLAG, AT(gravity_free),
      .help = "add the acceleration relative to the Earth to the track: north, east, down; mean "
              "since the previous row"},
+    {"smooth", OPTION_FLAG, AT(smooth),
+     .help = "correct the track backwards, too: later readings and stops tell of earlier errors"},
     {"interval", OPTION_QUANTITY, AT(interval), .value = "TIME", .unit = "s",
      .help = "time between rows of the track; default 1s"},
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "TRACK",

@@ -73,6 +73,9 @@ typedef struct imk_navigate_log_settings {
     double aid_interval; /**< shortest time between readings that are used [s]; 0: all are */
     double aid_until;    /**< later readings are only compared; from the log's first row [s];
                             default infinity */
+    /** Smooth the track backwards: later readings and stops correct earlier rows. Needs a model;
+     *  not with still_rotation. Memory: see navigation_smoother.h; default false. */
+    bool smooth;
 } imk_navigate_log_settings;
 
 /** Five minutes of alignment, height held. */
@@ -140,7 +143,9 @@ typedef struct imk_navigate_log {
     bool at_rest;   /**< the unit never moved, so the distance from the start is the error */
     double largest; /**< largest horizontal distance from the start [m] */
     size_t track_rows;
-    double *track[IMK_TRACK_COLUMNS];
+    double *track[IMK_TRACK_COLUMNS];    /**< smoothed, if the settings say so, but for the
+                                            acceleration */
+    double *filtered[IMK_TRACK_COLUMNS]; /**< then the track as filtered; else NULL */
 } imk_navigate_log;
 
 /** Navigate through the rows of a source.

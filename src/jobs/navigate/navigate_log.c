@@ -30,6 +30,7 @@ void imk_navigate_log_free(imk_navigate_log *result)
         return;
     const imk_allocator allocator = result->record.log.allocator;
     imki_resize(&allocator, result->track[0], 0);
+    imki_resize(&allocator, result->filtered[0], 0);
     for (size_t k = 0; k < IMK_AID_KIND_COUNT; k++)
         imki_resize(&allocator, result->aid[k].time, 0);
     imk_even_record_free(&result->record);
@@ -52,6 +53,9 @@ static imk_status check_settings(const imk_navigate_log_settings *s, imk_error *
         {"stop_length", timetable && !(s->stop_length > 0 && s->stop_length <= s->stop_period),
          s->stop_length, s->stop_period, "more than 0 s, at most the period"},
         {"aids", s->aids && !s->model, 0, 0, "a model: aids need one"},
+        {"smooth", s->smooth && !s->model, 0, 0, "a model: smoothing needs one"},
+        {"smooth", s->smooth && s->still_rotation > 0, 0, 0,
+         "no still_rotation, whose noise is not a state"},
         {"aid_count", s->aid_count > IMK_AIDS_MAX, (double)s->aid_count, IMK_AIDS_MAX,
          "at most 8 kinds"},
         {"aid_delay", !(fabs(s->aid_delay) <= 1e18), s->aid_delay, 0, "a time"},

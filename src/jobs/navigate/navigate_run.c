@@ -90,33 +90,16 @@ static void put_track(imk_navigate_log *n, const imk_navigation_filter_estimate 
                       double time, imk_vector3 sum, size_t count)
 {
     double row[IMK_TRACK_COLUMNS];
-    imk_geodetic place;
-    imk_vector3 velocity;
-    imk_matrix3 c_nb;
-    imk_navigation_state_to_ned(&estimate->state, &place, &velocity, &c_nb);
-    const imk_vector3 way = imk_navigation_difference_ned(&estimate->state, &n->start);
+    imki_navigate_track_row(n, estimate, row);
     row[IMK_TRACK_TIME] = time;
-    row[IMK_TRACK_LATITUDE] = place.latitude;
-    row[IMK_TRACK_LONGITUDE] = place.longitude;
-    row[IMK_TRACK_HEIGHT] = place.height;
-    for (int i = 0; i < 3; i++) {
-        row[IMK_TRACK_NORTH + i] = way.v[i];
-        row[IMK_TRACK_VELOCITY + i] = velocity.v[i];
-    }
-    /* Down is along the vertical, north and east across that of the start: a way of 40 km would
-     * else lead down by the curvature of the Earth. */
-    row[IMK_TRACK_NORTH + 2] = n->settings.place.height - place.height;
-    imk_matrix3_to_euler(c_nb, &row[IMK_TRACK_ROLL], &row[IMK_TRACK_PITCH], &row[IMK_TRACK_YAW]);
+    const imk_geodetic place = imk_geodetic_from_ecef(estimate->state.position);
     const imk_matrix3 axes = imk_ned_axes(place.latitude, place.longitude);
     sum = imk_matrix3_apply(imk_matrix3_transpose(axes), sum);
     for (int i = 0; i < 3; i++)
         row[IMK_TRACK_ACCELERATION + i] = count > 0 ? sum.v[i] / (double)count : 0.0;
-    for (int i = 0; i < IMK_NAVIGATION_ERRORS; i++)
-        row[IMK_TRACK_SIGMA + i] = sqrt(fmax(0.0, estimate->covariance[i][i]));
     for (int k = 0; k < IMK_TRACK_COLUMNS; k++)
         n->track[k][n->track_rows] = row[k];
     n->track_rows++;
-    n->largest = fmax(n->largest, hypot(way.v[0], way.v[1]));
 }
 
 /* ---- updates -----------------------------------------------------------------------------------
@@ -260,14 +243,15 @@ static void keep_timetable(const imk_navigate_log *n, imk_navigation_filter *fil
  */
 
 static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, stops *s,
-                         imki_navigate_aids *aids, size_t every, const imk_job *job,
-                         imk_error *error)
+                         imki_navigate_aids *aids, imk_navigation_smoother *smoother, size_t every,
+                         const imk_job *job, imk_error *error)
 {
     imk_status status = IMK_OK;
     imk_navigation_filter_get(filter, &n->end);
     imk_vector3 sum = {{0}};
     size_t count = 0;
     put_track(n, &n->end, n->first_time + n->record.dt * ((double)n->first - 1.0), sum, count);
+    status = imki_navigate_mark(smoother, error);
     for (size_t row = n->first; row < n->record.rows && status == IMK_OK; row++) {
         const size_t done = row + 1 - n->first;
         const imk_navigation_state before = imk_navigation_filter_state(filter);
@@ -285,7 +269,9 @@ static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, sto
             put_track(n, &n->end, n->first_time + n->record.dt * (double)row, sum, count);
             sum = (imk_vector3){{0}};
             count = 0;
-            status = imki_job_progress(job, "navigating", "rows", row, n->record.rows, error);
+            status = imki_navigate_mark(smoother, error);
+            if (status == IMK_OK)
+                status = imki_job_progress(job, "navigating", "rows", row, n->record.rows, error);
         }
     }
     n->counts = imk_navigation_filter_counted(filter);
@@ -356,10 +342,15 @@ imk_status imki_navigate_follow(imk_navigate_log *n, const imk_job *job, imki_ar
     status = memory
                  ? imk_navigation_filter_start(&settings, &n->start, &filter, memory, size, error)
                  : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    imk_navigation_smoother *smoother = NULL;
     if (status == IMK_OK)
         imki_navigate_start_biases(n, filter);
+    if (status == IMK_OK && n->settings.smooth)
+        status = imki_navigate_record(filter, scratch, &smoother, error);
     if (status == IMK_OK)
-        status = follow(n, filter, &s, aids, every, job, error);
+        status = follow(n, filter, &s, aids, smoother, every, job, error);
+    if (status == IMK_OK && smoother)
+        status = imki_navigate_smooth(n, smoother, error);
     if (status != IMK_OK)
         return status;
     imki_aids_finish(n, aids, filter);

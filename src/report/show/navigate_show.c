@@ -47,6 +47,7 @@ static void show_inputs(const imk_navigate_log *n, const char *name, imk_result 
     imk_result_quantity(result, "latitude", n->settings.place.latitude, "rad");
     imk_result_quantity(result, "longitude", n->settings.place.longitude, "rad");
     imk_result_quantity(result, "height", n->settings.place.height, "m");
+    imk_result_flag(result, "smoothed", n->settings.smooth);
     imk_result_text(result, "vertical", n->settings.hold_height ? "slaved" : "free");
     imk_result_end(result);
 }
