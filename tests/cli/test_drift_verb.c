@@ -71,7 +71,7 @@ static void test_presets(void **state)
     static const struct {
         const char *name;
         double minute, hour;
-    } known[] = {{"strategic", 0.073, 0.061}, {"navigation", 0.88, 0.75}, {"tactical", 17, 83}};
+    } known[] = {{"strategic", 0.071, 0.056}, {"navigation", 0.86, 0.71}, {"tactical", 17, 80}};
     json_t *result = result_of("$I drift strategic navigation tactical --times 1min,1h --json");
     for (size_t m = 0; m < 3; m++) {
         json_t *one = case_of(result, m);
