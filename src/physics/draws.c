@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Random numbers of the instruments. Instances of a stream: 0-63 draws, 64-71 constants of the
- * run, 128 + 21 k … the stages of flicker noise k < 6 (21 of them up to 1.6 MHz; beyond, the
+ * run, 128 + 21 k … the stages of flicker noise k < 6 (enough up to 1.9 MHz; beyond, the
  * slowest shares the numbers of the fastest of the next). Terms: IMK_TERM_PHYSICS + 256 times the
  * occasion. */
 #include "physics_internal.h"
