@@ -147,7 +147,7 @@ typedef struct imk_drift_analysis {
 IMK_API size_t imk_drift_covariance_size(const imk_model *model,
                                          const imk_drift_settings *settings);
 /** Covariance analysis along the motion. At 2.7 GHz, a day at rest takes some 40 ms and 10 minutes
- *  of a car's drive 60 ms, mostly for the 32 stages of the flicker noise.
+ *  of a car's drive 60 ms, mostly for the 28 stages of the flicker noise.
  *  @param memory    imk_drift_covariance_size() bytes; holds the analysis
  *  @param executor  sources are its work items; NULL: serial. The bits do not depend on it
  *  @return the errors of imk_drift_validate(), IMK_ERROR_WORKSPACE */
