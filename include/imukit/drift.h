@@ -27,6 +27,7 @@
 #ifndef IMUKIT_DRIFT_H
 #define IMUKIT_DRIFT_H
 
+#include "imukit/aiding.h"
 #include "imukit/executor.h"
 #include "imukit/model.h"
 #include "imukit/motion.h"
@@ -66,6 +67,14 @@ typedef struct imk_drift_settings {
     size_t time_count;
     const double *time; /**< times at which errors are computed, from the start of navigation:
                            increasing, > 0, up to 1e8 [s] */
+    /** Aids of the navigator, up to IMK_AIDS_MAX: their true errors. The navigator then is the
+     *  filter of navigation_filter.h. Their times count from the start of navigation; a reading is
+     *  used at the end of the sample that has ended by then, and zero velocity only where the
+     *  motion stands. While an aid gives a height, the vertical is free. */
+    size_t aid_count;
+    const imk_aid *aid;
+    const imk_aid *filter_aid;     /**< how the filter describes the same aids; NULL: as they are */
+    const imk_model *filter_model; /**< the model that the filter is made for; NULL: the model */
 } imk_drift_settings;
 
 /** At rest at 45 deg north, level, heading north, 100 Hz, slaved vertical, perfect start. */
@@ -103,7 +112,10 @@ typedef struct imk_drift_analysis {
     const imk_drift_source *source;
     const imk_drift_moments *contribution; /**< [source * time_count + time] */
     const imk_drift_moments *total;        /**< [time] */
-    const double *time;                    /**< [s] */
+    /** [time]: the covariance that the filter of an aided navigator has computed for itself; equal
+     *  to `total` if its description is the truth. NULL: no aids. */
+    const imk_drift_moments *believed;
+    const double *time; /**< [s] */
     /** Effects that the linear theory leaves out, for a warning. Those in Monte Carlo only: dead
      *  bands, ranges that the motion comes near, a resolution coarser than the noise
      *  ("gyro.resolution"), lost samples, and vibration acting on terms that are not linear
