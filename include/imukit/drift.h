@@ -88,6 +88,12 @@ IMK_API imk_drift_settings imk_drift_default(void);
 IMK_API imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *settings,
                                       imk_error *error);
 
+/** The vertical of these settings: free where an aid gives the height, else as they say. */
+IMK_API imk_vertical imk_drift_vertical(const imk_drift_settings *settings);
+/** When the outage of aids begins: the latest end (`until`) of those that end [s]; NaN: none ends.
+ *  Aids without an end, such as an odometer, go on. */
+IMK_API double imk_drift_outage(const imk_drift_settings *settings);
+
 /* ---- covariance ------------------------------------------------------------------------------ */
 
 /** Mean and covariance of the nine errors. */

@@ -187,6 +187,8 @@ typedef struct imk_drift_shown {
     imk_verdict verdict;
     const imk_result *model; /**< data of the last model under the key "model", from which values of
                                 terms are shown; NULL: they are not shown */
+    const char *filter_model; /**< file or name of the model that the filter is made for; NULL: that
+                                 of the unit */
 } imk_drift_shown;
 
 /** Show the growth of errors, budgets, runs, the answer to the requirement, and figures. */

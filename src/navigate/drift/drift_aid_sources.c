@@ -49,7 +49,7 @@ static bool is_measured(const imk_drift_settings *s, size_t aid, int axis)
 {
     const imk_aid *a = &s->aid[aid];
     const bool down = axis == 2 && a->kind != IMK_AID_ODOMETER;
-    return isfinite(a->sigma[axis]) && !(down && imki_drift_vertical(s) == IMK_VERTICAL_SLAVED);
+    return isfinite(a->sigma[axis]) && !(down && imk_drift_vertical(s) == IMK_VERTICAL_SLAVED);
 }
 
 static void add_noise(imki_drift_plan *plan, const imk_drift_settings *s, size_t aid, bool white)

@@ -85,7 +85,7 @@ imk_status imki_drift_filter_settings(const imk_model *model, const imk_drift_se
     imk_motion_state state;
     imk_trajectory_state(&motion->trajectory, motion->start, &state);
     describe_aids(settings, filter);
-    filter->hold_height = imki_drift_vertical(settings) == IMK_VERTICAL_SLAVED;
+    filter->hold_height = imk_drift_vertical(settings) == IMK_VERTICAL_SLAVED;
     memcpy(filter->initial_sigma, settings->initial_sigma, sizeof filter->initial_sigma);
     model = filter_model(model, settings);
     imk_status status = imk_navigation_filter_describe(

@@ -185,7 +185,7 @@ static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *
     c->time = c->climb + ROWS;
     c->kernel = c->random.kernel;
     c->dt = 1.0 / s->rate;
-    c->slaved = imki_drift_vertical(s) == IMK_VERTICAL_SLAVED;
+    c->slaved = imk_drift_vertical(s) == IMK_VERTICAL_SLAVED;
     if (s->alignment == IMK_ALIGNED_SELF) {
         c->alignment_rows = (uint64_t)(s->alignment_time * s->rate + 0.5);
         c->alignment_rows += c->alignment_rows == 0;

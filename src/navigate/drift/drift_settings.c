@@ -101,7 +101,7 @@ static imk_status check_numbers(const imk_drift_settings *s, imk_error *error)
     return IMK_OK;
 }
 
-imk_vertical imki_drift_vertical(const imk_drift_settings *settings)
+imk_vertical imk_drift_vertical(const imk_drift_settings *settings)
 {
     for (size_t k = 0; k < settings->aid_count; k++) {
         const imk_aid *aid = &settings->aid[k];
@@ -110,6 +110,15 @@ imk_vertical imki_drift_vertical(const imk_drift_settings *settings)
             return IMK_VERTICAL_FREE;
     }
     return settings->vertical;
+}
+
+double imk_drift_outage(const imk_drift_settings *settings)
+{
+    double last = (double)NAN;
+    for (size_t k = 0; k < settings->aid_count; k++)
+        if (isfinite(settings->aid[k].until) && !(settings->aid[k].until <= last))
+            last = settings->aid[k].until;
+    return last;
 }
 
 imk_status imki_drift_motion(const imk_drift_settings *settings, imki_drift_motion_of *motion,

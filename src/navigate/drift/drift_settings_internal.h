@@ -16,7 +16,4 @@ typedef struct imki_drift_motion_of {
 imk_status imki_drift_motion(const imk_drift_settings *settings, imki_drift_motion_of *motion,
                              imk_error *error);
 
-/* The vertical is free where an aid gives the height. */
-imk_vertical imki_drift_vertical(const imk_drift_settings *settings);
-
 #endif

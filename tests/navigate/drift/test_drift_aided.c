@@ -264,7 +264,7 @@ static void check_known(const imk_drift_settings *settings, const imk_model *mod
     imk_drift_analysis *analysis = analyse(model, settings);
     for (size_t t = 0; t < settings->time_count; t++)
         for (int i = 0; i < 9; i++) {
-            if (imki_drift_vertical(settings) == IMK_VERTICAL_SLAVED && (i == 2 || i == 5))
+            if (imk_drift_vertical(settings) == IMK_VERTICAL_SLAVED && (i == 2 || i == 5))
                 continue;
             CHECK_RELATIVE(one_sigma(&analysis->total[t], i), one_sigma(&analysis->believed[t], i),
                            tolerance);

@@ -87,6 +87,11 @@ static void show_case(const imk_drift_models *r, const imk_drift_case *one, imk_
         imk_result_quantity(result, "time", times->time[times->row[k]], "s");
         imk_result_text(result, "validity", validity[imk_drift_validity_of(f)]);
         show_figures("figures", f, result);
+        if (one->analysis->believed) {
+            const imk_drift_figures own =
+                imk_drift_figures_of(&one->analysis->believed[times->row[k]]);
+            show_figures("believed", &own, result);
+        }
         imk_result_end(result);
     }
     imk_result_end(result);
@@ -104,7 +109,8 @@ static void show_inputs(const imk_drift_models *r, const imk_drift_shown *shown,
     imki_show_texts(result, "models", r->model_count, r->name);
     imk_result_text(result, "motion", shown->motion);
     imk_result_quantity(result, "rate", s->rate, "Hz");
-    imk_result_text(result, "vertical", s->vertical == IMK_VERTICAL_FREE ? "free" : "slaved");
+    imk_result_text(result, "vertical",
+                    imk_drift_vertical(s) == IMK_VERTICAL_FREE ? "free" : "slaved");
     imk_result_text(result, "aligned", s->alignment == IMK_ALIGNED_SELF ? "self" : "given");
     imk_result_array(result, "initial_sigma");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
@@ -119,6 +125,7 @@ static void show_inputs(const imk_drift_models *r, const imk_drift_shown *shown,
     }
     if (s->alignment == IMK_ALIGNED_SELF)
         imk_result_quantity(result, "alignment_time", s->alignment_time, "s");
+    imki_drift_show_aids(r, shown->filter_model, result);
     if (r->found)
         imk_result_count(result, "seed", (long long)shown->seed);
     imk_result_end(result);
@@ -150,11 +157,15 @@ static void conditions_of(const imk_drift_models *r, const char *motion, imki_te
     else
         imki_text_add(text, "At rest at %.4g deg %s", fabs(s->latitude) / imk_unit_of("deg").scale,
                       s->latitude < 0 ? "south" : "north");
-    imki_text_add(text, "; attitude %s at the start, height %s.",
+    imki_text_put(text, "; ");
+    imki_drift_aids_words(r, text);
+    imki_text_add(text, "%sattitude %s at the start, height %s.", s->aid_count > 0 ? "; " : "",
                   s->alignment == IMK_ALIGNED_SELF ? "found by the unit itself"
                   : s->initial_sigma[6] + s->initial_sigma[7] + s->initial_sigma[8] > 0 ? "given"
                                                                                         : "true",
-                  s->vertical == IMK_VERTICAL_FREE ? "free" : "held by other means");
+                  imk_drift_vertical(s) == IMK_VERTICAL_SLAVED ? "held by other means"
+                  : s->vertical == IMK_VERTICAL_FREE           ? "free"
+                                                               : "from the aids");
 }
 
 static void show_title(const imk_drift_models *r, const imk_drift_shown *shown, imk_result *result)
@@ -186,10 +197,10 @@ static void show_deciding(const imk_drift_models *r, imk_result *result)
         const imk_drift_case *one = &r->cases[c];
         char text[IMKI_DRIFT_TIME];
         if (one->share_count > 0 && one->share[0].share > 0)
-            imk_result_line(
-                result, "%s: after %s %s contributes %.0f %% of the variance", one->label,
-                imki_drift_time(r->times->time[one->time], IMK_DRIFT_LINEAR, text),
-                one->analysis->source[one->share[0].source].text, 100 * one->share[0].share);
+            imk_result_line(result, "%s: after %s %s contributes %.0f %% of the variance",
+                            one->label, imki_drift_moment(r, r->times->time[one->time], text),
+                            one->analysis->source[one->share[0].source].text,
+                            100 * one->share[0].share);
     }
 }
 

@@ -71,6 +71,8 @@ static void add_value(const imk_drift_case *one, const imk_result *model, size_t
     imki_text text = {.bytes = NULL};
     if (strncmp(name, "initial.", 8) == 0)
         add_initial(&one->settings, name, factor, &text);
+    else if (strncmp(name, "aid.", 4) == 0)
+        imki_drift_aid_value(&one->settings, name, factor, &text);
     else
         imki_drift_term_value(model, name, one->settings.compensated, factor, &text);
     imk_table_add(table, "%s", text.size > 0 ? text.bytes : "");
@@ -184,7 +186,7 @@ void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, 
     snprintf(title, sizeof title, "Wanted: %s %s after %s",
              imk_drift_requirement_name(want->figure),
              imk_readable_quantity(want->goal, &want->unit, goal),
-             imki_drift_time(want->time, IMK_DRIFT_LINEAR, time));
+             imki_drift_moment(r, want->time, time));
     if (!met)
         snprintf(factor, sizeof factor,
                  "all terms would have to be %.3g times smaller. The smallest improvement that "
