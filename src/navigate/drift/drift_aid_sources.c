@@ -125,6 +125,11 @@ static imk_vector3 turning(const imk_motion_state *state, const imk_matrix3 *c)
                                 imk_matrix3_apply(imk_matrix3_transpose(*c), earth));
 }
 
+static bool is_velocity(imk_aid_kind kind)
+{
+    return kind == IMK_AID_VELOCITY || kind == IMK_AID_ODOMETER || kind == IMK_AID_ZERO_VELOCITY;
+}
+
 void imki_aid_reading(const imk_aid *aid, const imk_motion_state *state, const double arm[3],
                       const double off[3], double value[3])
 {
@@ -144,6 +149,9 @@ void imki_aid_reading(const imk_aid *aid, const imk_motion_state *state, const d
         value[2] = place.height;
         break;
     }
+    case IMK_AID_ZERO_VELOCITY:
+        v = imk_matrix3_apply(imk_matrix3_transpose(axes), state->velocity);
+        break;
     case IMK_AID_VELOCITY:
         v = imk_matrix3_apply(imk_matrix3_transpose(axes), v);
         break;
@@ -158,11 +166,10 @@ void imki_aid_reading(const imk_aid *aid, const imk_motion_state *state, const d
         value[0] = atan2(c_nb.m[1][0], c_nb.m[0][0]) + off[0];
         break;
     }
-    case IMK_AID_ZERO_VELOCITY:
     case IMK_AID_KIND_COUNT:
         break;
     }
-    for (int i = 0; i < 3 && (aid->kind == IMK_AID_VELOCITY || aid->kind == IMK_AID_ODOMETER); i++)
+    for (int i = 0; i < 3 && is_velocity(aid->kind); i++)
         value[i] = v.v[i] + off[i];
 }
 

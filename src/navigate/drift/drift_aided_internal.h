@@ -7,6 +7,7 @@
 #include "drift_covariance_internal.h"
 
 #include "imukit/navigation_filter.h"
+#include "imukit/simulate.h"
 #include "navigate/filter/navigation_filter_internal.h"
 
 enum { IMKI_UPDATE_ROWS = 3 };
@@ -113,5 +114,40 @@ void imki_loop_fill(const imki_drift_loop *loop, const imki_drift_plan *plan,
 /* The filter's own covariance. */
 void imki_loop_believed(const imki_drift_loop *loop, const imki_drift_node *node,
                         imk_drift_moments *moments);
+
+/* ---- drift_runs_aided.c ---- */
+
+/* One run: its filter, and the errors of its aids. */
+typedef struct imki_aided_run {
+    void *memory; /* for the filter */
+    size_t memory_size;
+    const imk_drift_settings *settings;
+    imk_navigation_filter *filter;
+    imk_random random;
+    uint32_t number;
+    double arm[IMK_AIDS_MAX][3];  /* true */
+    double slow[IMK_AIDS_MAX][3]; /* correlated errors */
+    uint64_t next[IMK_AIDS_MAX];  /* reading of each aid */
+} imki_aided_run;
+
+/* @param r  with its memory */
+imk_status imki_aided_run_start(imki_aided_run *r, const imk_drift_settings *settings,
+                                const imk_navigation_filter_settings *filter,
+                                const imk_navigation_state *start, imk_random random,
+                                uint32_t number, imk_error *error);
+/* Rows of a simulation, as drift_runs.c has them. */
+typedef struct imki_aided_rows {
+    const imk_trajectory *trajectory;
+    const imk_simulator *simulator;
+    double *const *column; /* rates and forces */
+    double dt, start, interval;
+    bool moves;
+    double *height, *climb, *time; /* of rows; room, where the motion moves */
+    uint64_t first, before;        /* row 0 of the columns; rows before the start of navigation */
+} imki_aided_rows;
+/* Take the rows from … to - 1. */
+void imki_aided_run_take(imki_aided_run *run, const imki_aided_rows *rows, size_t from, size_t to);
+/* Normalised error squared; NaN: the covariance is not one. */
+double imki_aided_run_nees(imki_aided_run *r, const imk_navigation_state *truth);
 
 #endif

@@ -32,8 +32,17 @@ static void describe_aids(const imk_drift_settings *settings,
 {
     imk_navigation_filter_default(filter);
     filter->aid_count = settings->aid_count;
-    for (size_t k = 0; k < settings->aid_count; k++)
-        filter->aid[k] = settings->filter_aid ? settings->filter_aid[k] : settings->aid[k];
+    for (size_t k = 0; k < settings->aid_count; k++) {
+        imk_aid *aid = &filter->aid[k];
+        *aid = settings->filter_aid ? settings->filter_aid[k] : settings->aid[k];
+        if (aid->kind != IMK_AID_ZERO_VELOCITY)
+            continue;
+        /* What a standing unit's velocity is beside zero is its error: a reading of the velocity.
+         */
+        aid->kind = IMK_AID_VELOCITY;
+        for (int i = 0; i < 3; i++)
+            aid->lever_arm[i] = aid->lever_arm_sigma[i] = 0.0;
+    }
 }
 
 static imk_alignment_settings alignment_of(const imk_model *model,
@@ -176,6 +185,15 @@ double imki_loop_limit(const imki_drift_loop *loop, double time, double goal)
 /* ---- running the filter ------------------------------------------------------------------------
  */
 
+/* A vertical that is held follows the truth. */
+static void hold(imki_drift_loop *loop, double time)
+{
+    imk_motion_state state;
+    imk_trajectory_state(loop->trajectory, time, &state);
+    loop->filter->strapdown.height = state.place.height;
+    loop->filter->strapdown.climb = -state.velocity_ned.v[2];
+}
+
 /* `samples` of dt from `begin`. */
 static void take(imki_drift_loop *loop, double begin, double dt, size_t samples)
 {
@@ -190,6 +208,8 @@ static void take(imki_drift_loop *loop, double begin, double dt, size_t samples)
         for (size_t i = 0; i < now; i++) {
             const imk_vector3 turn = {{rate[0][i] * dt, rate[1][i] * dt, rate[2][i] * dt}};
             const imk_vector3 gain = {{force[0][i] * dt, force[1][i] * dt, force[2][i] * dt}};
+            if (loop->filter->settings.hold_height)
+                hold(loop, boundary[i + 1]);
             imk_navigation_filter_step(loop->filter, dt, turn, gain);
         }
         done += now;

@@ -112,6 +112,11 @@ imk_vertical imk_drift_vertical(const imk_drift_settings *settings)
     return settings->vertical;
 }
 
+int imk_drift_nees_degrees(const imk_drift_settings *settings)
+{
+    return imk_drift_vertical(settings) == IMK_VERTICAL_FREE ? 9 : 7;
+}
+
 double imk_drift_outage(const imk_drift_settings *settings)
 {
     double last = (double)NAN;

@@ -296,16 +296,16 @@ static void test_known_to_the_filter(void **state)
         settings.initial_sigma[3 + i] = 0.1;
         settings.initial_sigma[6 + i] = 0.01;
     }
-    check_known(&settings, &model, 2e-4);
+    check_known(&settings, &model, 5e-4);
     settings.motion = &d.trajectory;
-    check_known(&settings, &model, 2e-4);
+    check_known(&settings, &model, 5e-4);
     settings.alignment = IMK_ALIGNED_SELF;
-    check_known(&settings, &model, 2e-4);
+    check_known(&settings, &model, 5e-4);
     /* The vertical follows the truth when no aid gives the height. */
     settings.aid = aid + 1;
     settings.aid_count = 2;
     settings.time_count = 3;
-    check_known(&settings, &model, 2e-4);
+    check_known(&settings, &model, 5e-4);
     free(d.piece);
 }
 
