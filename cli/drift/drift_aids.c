@@ -46,6 +46,9 @@ static int check_outage(const drift_options *o, const drift_scene *s)
                                o->outage ? "--outage" : "\"after\" in --want");
     if (o->filter_model && !o->aid.count)
         return command_misused("--filter-model is for a navigator with aids; add --aid");
+    if (o->gains == 1 && (!o->aid.count || !o->want))
+        return command_misused("--gains retuned is for --want with a navigator with aids; add %s",
+                               o->want ? "--aid" : "--want \"CEP 5 m after 60 s\"");
     return -1;
 }
 

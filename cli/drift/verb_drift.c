@@ -69,6 +69,10 @@ static const option aid_option_table[] = {
              "300s"},
     {"filter-model", OPTION_FILE, AT(filter_model), .value = "MODEL",
      .help = "the model that the navigator's filter is made for; default: that of the unit"},
+    {"gains", OPTION_CHOICE, AT(gains), .value = "HOW", .choices = "held|retuned",
+     .help =
+         "of --want: held (the default): the filter keeps its gains when terms improve; retuned: "
+         "it is made anew for the improved terms"},
 };
 
 static const option output_option_table[] = {
@@ -256,6 +260,7 @@ static int drift(work *w)
     settings.drift = scene->settings;
     settings.calibrated = o->compensated;
     settings.want = scene->want;
+    settings.want.retuned = o->gains == 1;
     for (size_t m = 0; m < w->count; m++)
         models[m] = w->model[m];
     const imk_status status = imk_drift_models_run(w->count, models, w->name, &scene->times,

@@ -261,5 +261,14 @@ IMK_API imk_status imk_drift_require(const imk_drift_analysis *analysis, size_t 
                                      imk_drift_requirement requirement, double goal,
                                      imk_drift_allocation *allocation, imk_error *error);
 
+/** Make what a source stands for so many times as large: numbers of the model (with `compensated`
+ *  the sigmas of known values), the start in the settings, or an aid. The analysis then finds the
+ *  source so many times as large, with a filter that is made for the new numbers.
+ *  @param source  imk_drift_source.name
+ *  @param aids    those of the settings, to be changed; NULL: none
+ *  @return false: nothing has this name */
+IMK_API bool imk_drift_scale_source(const char *source, double factor, imk_model *model,
+                                    imk_drift_settings *settings, imk_aid *aids);
+
 IMK_END_C
 #endif

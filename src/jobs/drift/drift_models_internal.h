@@ -30,5 +30,9 @@ bool imki_drift_would_do(const imk_drift_models *r, const imk_drift_candidate *c
 /* Fill r->answer. */
 imk_status imki_drift_answer(imk_drift_models *r, imki_arena *arena, const imk_executor *executor,
                              imk_error *error);
+/* The same with a filter that is made anew for what is improved: other factors in the allocation of
+ * the answer, none of which is for a term alone. */
+imk_status imki_drift_retune(imk_drift_models *r, imki_arena *arena, const imk_executor *executor,
+                             imk_error *error);
 
 #endif

@@ -113,6 +113,48 @@ void imki_drift_aid_sources(imki_drift_plan *plan, const imk_drift_settings *set
         add_lever_arm(plan, settings, aid);
 }
 
+/* Is it the name, and what is behind it? */
+static bool begins(const char *name, const char *first, const char **behind)
+{
+    const size_t length = strlen(first);
+    *behind = name + length;
+    return strncmp(name, first, length) == 0;
+}
+
+static void scale(double number[3], double factor)
+{
+    for (int i = 0; i < 3; i++)
+        number[i] *= factor; /* infinity stays */
+}
+
+bool imki_aid_scale(const char *name, double factor, size_t count, imk_aid *aids)
+{
+    const imk_drift_settings all = {.aid_count = count, .aid = aids};
+    const char *behind;
+    for (size_t k = 0; k < count; k++) {
+        char own[NAME_SIZE];
+        name_of(&all, k, own);
+        if (begins(name, own, &behind) && strcmp(behind, ".white") == 0) {
+            scale(aids[k].sigma, factor);
+            return true;
+        }
+        if (begins(name, own, &behind) && strcmp(behind, ".correlated") == 0) {
+            scale(aids[k].correlated_sigma, factor);
+            return true;
+        }
+    }
+    if (!begins(name, "lever_arm", &behind))
+        return false;
+    const size_t point = *behind == '[' ? (size_t)(behind[1] - '0') : 0;
+    bool same[IMK_AIDS_MAX];
+    for (size_t k = 0; k < count; k++)
+        same[k] = imki_aid_point(aids, k) == point;
+    for (size_t k = 0; k < count; k++)
+        if (same[k])
+            scale(aids[k].lever_arm_sigma, factor);
+    return true;
+}
+
 /* ---- readings ----------------------------------------------------------------------------------
  */
 

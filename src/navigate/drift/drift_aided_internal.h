@@ -24,6 +24,8 @@ typedef enum imki_aid_error {
 void imki_drift_aid_sources(imki_drift_plan *plan, const imk_drift_settings *settings);
 /* The first of the aids that is at the same point of the body. */
 size_t imki_aid_point(const imk_aid *aids, size_t aid);
+/* A source "aid.NAME" made so many times as large. @return false: there is none */
+bool imki_aid_scale(const char *name, double factor, size_t count, imk_aid *aids);
 /* What an aid reads (imk_aid_reading.value) of a true state with an arm, `off` on its axes. */
 void imki_aid_reading(const imk_aid *aid, const imk_motion_state *state, const double arm[3],
                       const double off[3], double value[3]);

@@ -48,6 +48,16 @@ static void show_runs_data(const imk_drift_models *r, imk_result *result)
         show_figures("figures", &r->found[k], result);
         show_figures("lower", &r->low[k], result);
         show_figures("upper", &r->high[k], result);
+        if (r->nees_degrees > 0) {
+            double low, high;
+            imki_drift_nees_due(r, k, &low, &high);
+            imk_result_object(result, "nees");
+            imk_result_number(result, "mean", r->nees[k]);
+            imk_result_number(result, "degrees", r->nees_degrees);
+            imk_result_number(result, "lower", low);
+            imk_result_number(result, "upper", high);
+            imk_result_end(result);
+        }
         imk_result_end(result);
     }
     imk_result_end(result);
@@ -233,9 +243,10 @@ void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *shown, imk
     if (r->found) {
         imk_result_for(result, IMK_FOR_TERMINAL);
         imk_result_line(result,
-                        "\nMonte Carlo of %s: %llu runs of the whole mechanisation; in brackets "
-                        "95 %% intervals.",
-                        imki_drift_last_case(r)->label, (unsigned long long)r->run_count);
+                        "\nMonte Carlo of %s: %llu runs of the whole %s; in brackets 95 %% "
+                        "intervals.",
+                        imki_drift_last_case(r)->label, (unsigned long long)r->run_count,
+                        r->nees_degrees > 0 ? "filter and its aids" : "mechanisation");
         imk_result_for(result, IMK_FOR_PAGE);
         imk_result_heading(result, "Monte Carlo");
         imk_result_for(result, IMK_FOR_BOTH);

@@ -20,6 +20,8 @@ void imki_drift_show_answer_data(const imk_drift_models *r, imk_result *result)
     imk_result_quantity(result, "time", want->time, "s");
     imk_result_quantity(result, "present", need->present, unit);
     imk_result_number(result, "all", need->all);
+    if (r->settings.drift.aid_count > 0)
+        imk_result_text(result, "gains", want->retuned ? "retuned" : "held");
     imk_result_array(result, "terms");
     for (size_t k = 0; k < a->source_count; k++) {
         imk_result_object(result, NULL);
@@ -187,7 +189,9 @@ void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, 
              imk_drift_requirement_name(want->figure),
              imk_readable_quantity(want->goal, &want->unit, goal),
              imki_drift_moment(r, want->time, time));
-    if (!met)
+    if (!met && !(need->all > 0))
+        snprintf(factor, sizeof factor, "no improvement of its terms meets the requirement.");
+    else if (!met)
         snprintf(factor, sizeof factor,
                  "all terms would have to be %.3g times smaller. The smallest improvement that "
                  "meets the requirement:",
@@ -198,6 +202,11 @@ void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, 
     imk_result_line(result, "\n" IMK_BOLD "%s." IMK_PLAIN " %s: the figure is %s; %s", title,
                     met ? "Met" : "Not met", imk_readable_quantity(need->present, &want->unit, now),
                     factor);
+    if (!met && r->settings.drift.aid_count > 0)
+        imk_result_line(result, "%s",
+                        want->retuned ? "The filter is made anew for the improved terms."
+                                      : "The filter keeps its gains; --gains retuned makes it anew "
+                                        "for the improved terms.");
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, title);
     imk_result_finding(

@@ -29,6 +29,9 @@ void imki_drift_aid_value(const imk_drift_settings *settings, const char *source
 void imki_drift_show_growth(const imk_drift_models *r, imk_result *result);
 void imki_drift_show_budget(const imk_drift_models *r, const imk_drift_case *one,
                             imk_result *result);
+/* The 95 % interval of the mean normalised error squared of a row, if the filter knows the truth.
+ */
+void imki_drift_nees_due(const imk_drift_models *r, size_t row, double *low, double *high);
 void imki_drift_show_runs(const imk_drift_models *r, imk_result *result);
 /* How the runs compare with the covariance. */
 void imki_drift_show_ratios(const imk_drift_models *r, imk_result *result);

@@ -2,6 +2,8 @@
 /* Drift in tables: growth, budgets, runs. */
 #include "drift_show_internal.h"
 
+#include "imukit/distributions.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -252,12 +254,21 @@ static void add_interval(imk_table *table, imk_drift_requirement requirement, do
                   isinf(high) ? "?" : imk_readable_number(high / unit.scale, c));
 }
 
+void imki_drift_nees_due(const imk_drift_models *r, size_t row, double *low, double *high)
+{
+    const double n = (double)r->used[row], degrees = n * r->nees_degrees;
+    *low = n > 0 ? imk_chi_square_quantile(0.025, degrees) / n : (double)NAN;
+    *high = n > 0 ? imk_chi_square_quantile(0.975, degrees) / n : (double)NAN;
+}
+
 void imki_drift_show_runs(const imk_drift_models *r, imk_result *result)
 {
     static const imk_drift_requirement shown[] = {IMK_REQUIRED_CEP, IMK_REQUIRED_R95,
                                                   IMK_REQUIRED_VELOCITY, IMK_REQUIRED_HEADING};
     imk_table *table = begin_table(result, 0);
     imk_table_row(table, "time\truns\tCEP\tR95\tvelocity\theading");
+    if (r->nees_degrees > 0)
+        imk_table_add(table, "NEES\tdue");
     for (size_t k = 0; k < r->times->row_count; k++) {
         begin_row(r, table, imki_drift_row_time(r, k), IMK_DRIFT_LINEAR);
         imk_table_add(table, "%zu", r->used[k]);
@@ -265,6 +276,11 @@ void imki_drift_show_runs(const imk_drift_models *r, imk_result *result)
             add_interval(table, shown[c], imk_drift_required(&r->found[k], shown[c]),
                          imk_drift_required(&r->low[k], shown[c]),
                          imk_drift_required(&r->high[k], shown[c]));
+        if (r->nees_degrees > 0) {
+            double low, high;
+            imki_drift_nees_due(r, k, &low, &high);
+            imk_table_add(table, "%.3g\t%.3g to %.3g", r->nees[k], low, high);
+        }
     }
 }
 
