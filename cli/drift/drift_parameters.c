@@ -90,6 +90,7 @@ static void put_physics(const imk_model *model, imk_result *result)
     bare->name[0] = bare->description[0] = bare->residual_of[0] = '\0';
     forget(&bare->gyro_evidence);
     forget(&bare->accel_evidence);
+    bare->gyro.stated_zero = bare->accel.stated_zero = bare->mag.stated_zero = 0;
     bare->gyro.noise.density = bare->accel.noise.density = IMK_DENSITY_TWO_SIDED;
     if (command_unless_memory(imk_model_print_json(bare, NULL, &text, &size, NULL)) == IMK_OK)
         (void)imk_result_json(result, "model", text);

@@ -150,12 +150,20 @@ static double motion_length(const drift_scene *s)
     return s->motion ? imk_motion_file_duration(s->motion) : (double)INFINITY;
 }
 
+/* The last row that is not past the end, whatever the rounding of its time. */
+static double last_row(double length, double rate)
+{
+    return floor(length * rate + 1e-6) / rate;
+}
+
 static int choose_duration(const drift_options *o, const drift_scene *s, double *duration)
 {
     const double length = motion_length(s);
     *duration = o->duration;
     if (isnan(*duration))
-        *duration = s->want.asked && !o->times ? s->want.time : isinf(length) ? day : length;
+        *duration = s->want.asked && !o->times ? s->want.time
+                    : isinf(length)            ? day
+                                               : last_row(length, s->settings.rate);
     if (!(*duration > 0))
         return command_misused("--duration must be positive");
     if (*duration > 1e8)

@@ -19,10 +19,11 @@ static const option navigate_option_table[] = {
     {"align", OPTION_QUANTITY, AT(align), .value = "TIME", .unit = "s",
      .help = "time at rest at the start, in which the unit finds its attitude"},
     {"align-method", OPTION_CHOICE, AT(method), .value = "CHOICE", .choices = "means|inertial|fine",
-     .help = "means: from the mean force and rate (the default for gyros that read more than 1.5 "
-             "times the Earth's rotation); inertial: from the turn of gravity in inertial axes "
-             "(the default for other gyros; the unit may rock); fine: inertial, then an estimate "
-             "of the remaining errors"},
+     .help =
+         "means: from the mean force and rate (the default for gyros that read more than 1.5 "
+         "times the Earth's rotation, or that the --model says cannot find north to 11 deg); "
+         "inertial: from the turn of gravity in inertial axes (the default for other gyros; the "
+         "unit may rock); fine: inertial, then an estimate of the remaining errors"},
     {"heading", OPTION_TEXT, AT(heading), .value = "ANGLE",
      .help = "azimuth of body x at the start, for gyros that cannot find north, such as \"30 +- 1 "
              "deg\""},

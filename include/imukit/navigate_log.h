@@ -29,8 +29,8 @@ typedef struct imk_navigate_log_settings {
     imk_geodetic place;  /**< place of the start; default 0, 0, 0 */
     double align; /**< time at the start during which the unit is stationary and finds its attitude
                      [s], 1 or more; 0: `attitude` is given; default 300 */
-    bool method_given; /**< true: `method` is used; false: the readings of the gyros decide the
-                          method */
+    bool method_given; /**< true: `method` is used; false: inertial where the gyros of the model
+                          find north to 0.2 rad, else means; without a model the readings decide */
     imk_alignment_method method;
     bool heading_given; /**< the heading is attitude[2], and the alignment finds roll and pitch
                            only; default false */
@@ -83,6 +83,7 @@ typedef struct imk_navigate_log {
     size_t first;             /**< row where navigation begins, just after the alignment */
     double first_time;        /**< time of that row [s] */
     imk_alignment_method method;
+    bool coarse; /**< the biases of the gyros hide the Earth's rotation: north was not found */
     imk_alignment_result alignment;
     double attitude[3];         /**< roll, pitch, yaw at the start of navigation [rad] */
     double attitude_sigma[3];   /**< 1 sigma about north, east, down [rad]; 0: not known */

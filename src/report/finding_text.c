@@ -355,6 +355,9 @@ static const struct message {
     {"axes", "the angle between force and rotation fits latitude {0.1f} deg, not {1.1f} deg: "
              "{2?}the sign of the latitude, of all gyros or of all accelerometers is wrong{2!}the "
              "axes are not forward-right-down (state them with --axes), or a bias is large"},
+    {"north_unknown", "the biases of the gyros {0?}in the model hide{0!}hide{?} the Earth's "
+                      "rotation, so north cannot "
+                      "be found: the heading at the start is a guess; add --heading"},
     {"start_acceleration",
      "with the attitude given, the log begins with an acceleration of {0.3g} m/s^2: {1?}the unit "
      "of the accelerometers is probably {other}, not {name}{1!}the attitude, --axes or the unit of "

@@ -38,9 +38,11 @@ static imk_status describe_errors(imk_navigate_log *n, imk_navigation_filter_set
     imk_status status = imk_navigation_filter_describe(
         o->model, n->record.dt, imk_matrix3_apply(c_bn, imk_earth_rate(place.latitude)),
         imk_matrix3_apply(c_bn, up), s, error);
-    if (status == IMK_OK && aligned)
-        status = imk_navigation_filter_aligned(&n->alignment, n->method, !o->heading_given,
+    if (status == IMK_OK && aligned) {
+        imki_navigate_free_biases(n, s);
+        status = imk_navigation_filter_aligned(&n->alignment, n->method, imki_navigate_north(n),
                                                n->record.dt * (double)n->first, s);
+    }
     if (status == IMK_OK)
         return status;
     return imki_fail(&n->findings, error, status,
@@ -338,6 +340,8 @@ imk_status imki_navigate_follow(imk_navigate_log *n, const imk_job *job, imki_ar
     status = memory
                  ? imk_navigation_filter_start(&settings, &n->start, &filter, memory, size, error)
                  : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    if (status == IMK_OK)
+        imki_navigate_start_biases(n, filter);
     if (status == IMK_OK)
         status = follow(n, filter, &s, every, job, error);
     if (status != IMK_OK)

@@ -53,8 +53,7 @@ void imki_drift_heights(const imk_trajectory *trajectory, size_t count, const si
     imki_cursor_start(&cursor, trajectory, time[0]);
     for (size_t k = 0; k < count; k++) {
         double p[3], v[3];
-        imki_cursor_advance(&cursor, time[k]);
-        moving_point(trajectory, cursor.piece, time[k], p, v);
+        moving_point(trajectory, imki_cursor_at(&cursor, time[k]), time[k], p, v);
         const double x = trajectory->origin[0] + p[0], y = trajectory->origin[1] + p[1];
         const double z = trajectory->origin[2] + p[2], pp = x * x + y * y;
         const slope vertical = vertical_at(pp, z);

@@ -60,6 +60,7 @@ static void show_start(const imk_navigate_log *n, imk_result *result)
     show_three("attitude_sigma", n->attitude_sigma, "rad", result);
     if (is_aligned(n)) {
         imk_result_text(result, "method", method_names[n->method]);
+        imk_result_flag(result, "north_found", !n->coarse);
         imk_result_quantity(result, "duration", n->record.dt * (double)n->first, "s");
         imk_result_quantity(result, "disturbance", n->alignment.disturbance, "m/s");
         imk_result_number(result, "gravity_ratio", n->alignment.gravity_ratio);
@@ -146,7 +147,8 @@ static void show_attitude(const imk_navigate_log *n, imk_result *result)
         "  force %.6f of normal gravity, rotation %.4f of the Earth's, sway %.2g m/s",
         n->record.dt * (double)n->first, method_names[n->method],
         !n->settings.method_given && n->method == IMK_ALIGNMENT_MEANS
-            ? ", because the gyros read more than the Earth's rotation"
+            ? n->settings.model ? ", because the gyro biases hide the Earth's rotation"
+                                : ", because the gyros read more than the Earth's rotation"
             : "",
         angles_text(n->attitude, text), n->settings.heading_given ? " (yaw given)" : "", tilt,
         north, n->settings.model ? "" : " (from the scatter alone; --model includes the biases)",
