@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The run: samples through the mechanisation, updates where the unit stands, and the track. */
-#include "navigate_log_internal.h"
+#include "navigate_aids_internal.h"
 
 #include <math.h>
 
@@ -255,8 +255,9 @@ static void keep_timetable(const imk_navigate_log *n, imk_navigation_filter *fil
 /* ---- run ---------------------------------------------------------------------------------------
  */
 
-static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, stops *s, size_t every,
-                         const imk_job *job, imk_error *error)
+static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, stops *s,
+                         imki_navigate_aids *aids, size_t every, const imk_job *job,
+                         imk_error *error)
 {
     imk_status status = IMK_OK;
     imk_navigation_filter_get(filter, &n->end);
@@ -271,6 +272,7 @@ static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, sto
         const imk_navigation_state after = imk_navigation_filter_state(filter);
         sum = imk_vector3_add(sum, acceleration(n, &before, &after, row));
         count++;
+        imki_aids_update(n, aids, filter, row);
         watch(n, filter, s, row);
         if (n->settings.stops == IMK_STOPS_TIMETABLE)
             keep_timetable(n, filter, s, n->record.dt * (double)done);
@@ -283,7 +285,7 @@ static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, sto
         }
     }
     n->counts = imk_navigation_filter_counted(filter);
-    n->at_rest = is_at_rest(s);
+    n->at_rest = is_at_rest(s) && n->aid_count == 0;
     return status;
 }
 
@@ -329,6 +331,16 @@ imk_status imki_navigate_follow(imk_navigate_log *n, const imk_job *job, imki_ar
     const double steps = n->settings.interval / n->record.dt;
     const size_t every = steps < 1.5 ? 1 : steps < 1e15 ? (size_t)llround(steps) : n->record.rows;
     imk_status status = describe_errors(n, &settings, error);
+    imki_navigate_aids *aids = imki_arena_take(scratch, sizeof *aids);
+    if (!aids)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    if (status == IMK_OK && n->settings.aids) {
+        status = imki_aids_load(n, job, scratch, aids, error);
+        if (status == IMK_OK)
+            status = imki_aids_start(n, aids, error);
+        if (status == IMK_OK)
+            imki_aids_describe(n, aids, &settings);
+    }
     if (status == IMK_OK && imki_navigate_aligns(n))
         status = learn_rest(n, &s, error);
     if (status == IMK_OK)
@@ -343,9 +355,10 @@ imk_status imki_navigate_follow(imk_navigate_log *n, const imk_job *job, imki_ar
     if (status == IMK_OK)
         imki_navigate_start_biases(n, filter);
     if (status == IMK_OK)
-        status = follow(n, filter, &s, every, job, error);
+        status = follow(n, filter, &s, aids, every, job, error);
     if (status != IMK_OK)
         return status;
+    imki_aids_finish(n, aids, filter);
     warn_of_updates(n, &s);
     return check_track(n, error);
 }
