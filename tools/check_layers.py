@@ -45,7 +45,7 @@ PUBLIC = {
     "physics": "instrument laboratory",  # and of each folder of src/physics
     "report": "report result show",
     "io": "campaign design_file figure_file firmware_file io log memory_limit model_file "
-          "motion_file output_file parameter_file thread_pool",
+          "aid_text motion_file output_file parameter_file thread_pool",
 }
 MODULE_OF = {name: module for module, names in PUBLIC.items() for name in names.split()}
 # Headers that gather others, for users: each public header is in one of them.

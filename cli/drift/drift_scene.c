@@ -200,7 +200,8 @@ static int choose_times(const drift_options *o, drift_scene *s)
     if (code >= 0)
         return code;
     if (imk_drift_times_choose(duration, rows.count, rows.at, s->want.asked ? s->want.time : 0,
-                               s->settings.rate, o->plot || o->report || o->output, NULL, &s->times,
+                               s->settings.rate, o->plot || o->report || o->output,
+                               outage ? imk_drift_outage(&s->settings) : 0, NULL, &s->times,
                                &error) != IMK_OK)
         return command_error(&error, NULL);
     const double length = motion_length(s), last = s->times.time[s->times.count - 1];

@@ -188,13 +188,16 @@ static void show_requirement(const imk_drift_models *r, imk_result *result)
     char length[IMK_READABLE_SIZE];
     const imk_drift_case *one = &r->cases[r->case_count - 1];
     const imk_drift_figures *f = &one->figures[one->time];
-    const double time = r->times->time[one->time], hours = time / 3600, minutes = time / 60;
+    const double at = r->times->time[one->time], outage = imk_drift_outage(&r->settings.drift);
+    const bool after = at > outage; /* not without an outage */
+    const double time = after ? at - outage : at, hours = time / 3600, minutes = time / 60;
     const bool whole_hours = hours == floor(hours), whole_minutes = minutes == floor(minutes);
     if (!(f->cep > 0) || imk_drift_validity_of(f) == IMK_DRIFT_LOST)
         return;
     imk_result_line(result,
-                    "\nNext, to see what would halve the error: %s --want \"CEP %s @ %.8g%s\"",
+                    "\nNext, to see what would halve the error: %s --want \"CEP %s %s %.8g%s\"",
                     command_line(), imk_readable_figure(IMK_REQUIRED_CEP, 0.5 * f->cep, length),
+                    after ? "after" : "@",
                     whole_hours     ? hours
                     : whole_minutes ? minutes
                                     : time,

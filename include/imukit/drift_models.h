@@ -35,9 +35,10 @@ typedef struct imk_drift_times {
  *  @param rate      sampling rate [Hz]
  *  @param curves    true: add times for curves, evenly in every decade and close enough to show
  *                   Schuler's period of 84 min
+ *  @param origin    from which the curves count [s]: 0, or the end of the aids (imk_drift_outage())
  *  @return IMK_ERROR_MEMORY, IMK_ERROR_RANGE (too many) */
 IMK_API imk_status imk_drift_times_choose(double duration, size_t count, const double *stated,
-                                          double wanted, double rate, bool curves,
+                                          double wanted, double rate, bool curves, double origin,
                                           const imk_allocator *allocator, imk_drift_times *times,
                                           imk_error *error);
 /** Free its arrays. */

@@ -514,6 +514,49 @@ static void test_unstated_of_a_static_log(void **state)
     json_decref(document);
     assert_int_equal(run("$I grade a.yaml"), 0);
     check_contains(out, "a: at best ", out);
+/* Times count from the end of the aids; data names the aids; what is asked without aids, or without
+ * their end, is refused with what to add. */
+static void test_aids(void **state)
+{
+    (void)state;
+    json_t *result = result_of(
+        "$I drift tactical --rate 20Hz --aid \"gnss position 1 m, velocity 0.05 m/s at 1 Hz until "
+        "40 s\" --aid \"odometer 0.1 m/s\" --outage 10s,30s --initial-attitude \"0.1 deg\" "
+        "--monte-carlo 16 --json");
+    json_t *inputs = json_object_get(document, "inputs");
+    assert_int_equal(json_array_size(json_object_get(inputs, "aids")), 3);
+    CHECK_CLOSE(value_of(json_object_get(inputs, "outage")), 40.0, 0.0);
+    json_t *times = json_object_get(case_of(result, 0), "times");
+    assert_int_equal(json_array_size(times), 3);
+    const double row[3] = {40.0, 50.0, 70.0};
+    for (size_t k = 0; k < 3; k++)
+        CHECK_CLOSE(value_of(json_object_get(json_array_get(times, k), "time")), row[k], 1e-12);
+    assert_true(figure(case_of(result, 0), 2, "cep") > 2 * figure(case_of(result, 0), 0, "cep"));
+    assert_non_null(json_object_get(json_array_get(times, 2), "believed"));
+    json_t *runs = json_object_get(json_object_get(result, "monte_carlo"), "times");
+    json_t *nees = json_object_get(json_array_get(runs, 0), "nees");
+    assert_int_equal(json_integer_value(json_object_get(nees, "degrees")), 9);
+    assert_true(json_number_value(json_object_get(nees, "mean")) > 3.0 &&
+                json_number_value(json_object_get(nees, "mean")) < 20.0);
+    json_decref(document);
+    static const struct {
+        const char *line, *message;
+    } wrong[] = {
+        {"$I drift tactical --outage 60s", "add --aid"},
+        {"$I drift tactical --aid \"position 1 m\" --outage 60s", "no --aid ends"},
+        {"$I drift tactical --aid \"position 1 m\" --want \"CEP 5 m after 60 s\"", "no --aid ends"},
+        {"$I drift tactical --aid \"positon 1 m\"", "did you mean position?"},
+        {"$I drift tactical --aid \"position 1 m at 1 Hz until 60 s\" --outage 60s --times 1s",
+         "leave --times out"},
+        {"$I drift tactical --aid \"position 1 m at 200 Hz\" --duration 10s", "once a sample"},
+        {"$I drift tactical --gains retuned", "--want"},
+        {"$I drift tactical --filter-model navigation", "add --aid"},
+    };
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+        assert_true(run(wrong[k].line) != 0);
+        if (!strstr(err, wrong[k].message))
+            fail_msg("%s: %s", wrong[k].line, err);
+    }
     sweep();
 }
 
@@ -533,6 +576,7 @@ int main(void)
         cmocka_unit_test(test_monte_carlo),
         cmocka_unit_test(test_files),
         cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_aids),
         cmocka_unit_test(test_messages),
         cmocka_unit_test(test_omitted),
         cmocka_unit_test(test_unstated),

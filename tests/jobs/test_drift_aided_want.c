@@ -78,7 +78,7 @@ static void check_want(imk_drift_requirement figure, double goal, bool retuned)
     settings.calibrated = false;
     settings.want = (imk_drift_wanted){
         .asked = true, .figure = figure, .goal = goal, .time = wanted, .retuned = retuned};
-    CHECK_OK(imk_drift_times_choose(0.0, 2, stated, 0.0, 10.0, false, NULL, &times, &error));
+    CHECK_OK(imk_drift_times_choose(0.0, 2, stated, 0.0, 10.0, false, 0.0, NULL, &times, &error));
     CHECK_OK(imk_drift_models_run(1, models, names, &times, &settings, NULL, &r, &error));
     const imk_drift_allocation *need = &r->answer->allocation;
     double all[IMK_DRIFT_SOURCES_MAX];

@@ -35,7 +35,7 @@ const char *imki_drift_moment(const imk_drift_models *r, double time, char text[
     double since;
     const bool without = is_without(r, time, &since);
     imki_drift_time(without ? since : time, IMK_DRIFT_LINEAR, plain);
-    snprintf(text, IMKI_DRIFT_TIME, "%.40s%s", plain, without ? " without aids" : "");
+    snprintf(text, IMKI_DRIFT_TIME, "%.40s%s", plain, without ? " of outage" : "");
     return text;
 }
 

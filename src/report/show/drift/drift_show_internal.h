@@ -15,7 +15,7 @@ const char *imki_drift_time(double time, imk_drift_validity validity, char text[
 /* A time of the table: "+1 min" behind the end of the aids, "10 min, aided" before it. */
 const char *imki_drift_row_label(const imk_drift_models *r, double time,
                                  imk_drift_validity validity, char text[IMKI_DRIFT_TIME]);
-/* In a sentence: "1 min without aids", or "10 min". */
+/* In a sentence: "1 min of outage", or "10 min". */
 const char *imki_drift_moment(const imk_drift_models *r, double time, char text[IMKI_DRIFT_TIME]);
 /* "aided by position 1 m, velocity 0.05 m/s at 1 Hz until 10 min"; nothing without aids. */
 void imki_drift_aids_words(const imk_drift_models *r, imki_text *text);
