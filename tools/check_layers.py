@@ -40,7 +40,7 @@ PUBLIC = {
     "compensate": "compensate firmware",
     "calibrate": "axes_mending calibration calibration_plan evaluate ferraris magnetometer procedure "
                  "reference_alignment repeatability static_detection test_record thermal",
-    "navigate": "alignment drift navigate zero_velocity",
+    "navigate": "alignment drift filter_tuning navigate zero_velocity",
     "physics": "instrument laboratory",  # and of each folder of src/physics
     "report": "report result show",
     "io": "campaign design_file figure_file firmware_file io log memory_limit model_file "
