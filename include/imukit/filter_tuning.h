@@ -82,7 +82,8 @@ typedef enum imk_filter_answer_kind {
                                sum over tau of tr(P_m^-1 P_t) + ln det P_m */
     IMK_FILTER_SAFE,        /**< no direction is underestimated: the least noise for which the
                                largest eigenvalue of P_m^-1 P_t is at most eigen_limit at each tau */
-    IMK_FILTER_FIT_SCALED,  /**< fit of a filter that estimates scale factors, too */
+    IMK_FILTER_FIT_SCALED,  /**< fit of a filter that estimates scale factors, too, whose sigmas are
+                               those of the model; not found if it states none */
     IMK_FILTER_SAFE_SCALED, /**< safe, with scale factors */
     IMK_FILTER_ANSWERS
 } imk_filter_answer_kind;
@@ -123,6 +124,9 @@ typedef struct imk_filter_tuning {
     size_t source_count;
     const imk_drift_source *source;
     const double (*truth)[IMK_TUNING_STATES][IMK_TUNING_STATES]; /**< P_t [time] */
+    /** True increments [window * time_count + time]: attitude of the end in the axes of the
+     *  beginning, by rows, velocity and position. */
+    const double (*increments)[15];
     imk_filter_answer answer[IMK_FILTER_ANSWERS];
     double bias_sigma[2]; /**< as used */
     bool inconstant;     /**< true: nees of the fit is below 0.5 or above 2 at some time, so that no

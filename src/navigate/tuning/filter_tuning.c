@@ -37,6 +37,7 @@ static void take_lane(imki_parts *memory, imki_tuning_lane *lane, size_t element
     made.states = imki_take(memory, elements * sizeof *made.states);
     made.mean = imki_take(memory, sources * sizeof *made.mean);
     made.covariance = imki_take(memory, sources * sizeof *made.covariance);
+    made.increments = imki_take(memory, times * sizeof *made.increments);
     made.total = imki_take(memory, times * sizeof *made.total);
     made.shift = imki_take(memory, times * sizeof *made.shift);
     made.part = imki_take(memory, sources * times * sizeof *made.part);
@@ -60,6 +61,7 @@ static void take_totals(layout *l, const imk_filter_tuning_settings *s, size_t s
     t->truth = imki_take(memory, times * sizeof *t->truth);
     t->source = imki_take(memory, sources * times * sizeof *t->source);
     t->basis = imki_take(memory, IMKI_BASES * times * sizeof *t->basis);
+    t->increments = imki_take(memory, t->windows * times * sizeof *t->increments);
     t->window_total = imki_take(memory, t->windows * times * sizeof *t->window_total);
     t->window_shift = imki_take(memory, t->windows * times * sizeof *t->window_shift);
     t->window_basis = imki_take(memory, t->windows * t->bases * times * sizeof *t->window_basis);
@@ -134,6 +136,7 @@ static void keep_window(layout *l, const imki_tuning_lane *lane, size_t window)
     const double weight = 1.0 / (double)t->windows;
     for (size_t time = 0; time < t->times; time++) {
         const size_t at = window * t->times + time;
+        memcpy(t->increments[at], lane->increments[time], sizeof lane->increments[time]);
         memcpy(t->window_total[at], lane->total[time], sizeof lane->total[time]);
         memcpy(t->window_shift[at], lane->shift[time], sizeof lane->shift[time]);
         for (size_t s = 0; s < t->sources; s++)
@@ -234,6 +237,7 @@ static void fill_result(layout *l)
         l->time[t] = (double)grid->samples[t] / l->settings->rate;
     tuning->source_count = l->totals.sources;
     tuning->source = l->source;
+    tuning->increments = (const double(*)[15])l->totals.increments;
     tuning->truth = (const double(*)[9][9])l->totals.truth;
     for (size_t t = 0; t < l->totals.times; t++)
         for (size_t s = 0; s < l->totals.sources; s++)
@@ -281,7 +285,7 @@ imk_status imk_filter_tuning_run(const imk_model *model, const imk_filter_tuning
     omit_ranges(&l, model, peak);
     l.tuning->omitted_count = l.plan->drift.omitted_count;
     fill_result(&l);
-    if (!imki_tuning_answers(&l.totals, &l.arrays, model, settings->eigen_limit, l.tuning))
+    if (!imki_tuning_answers(&l.totals, &l.arrays, model, l.settings, l.tuning))
         return refuse_perfect(error);
     *tuning = l.tuning;
     return IMK_OK;

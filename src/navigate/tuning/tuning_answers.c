@@ -22,9 +22,7 @@ static double variance_of(const imk_filter_parameters *p, int kind, int sensor, 
 
 static double *number_of(imk_filter_parameters *p, int kind, int sensor, int axis)
 {
-    return kind == IMKI_BASIS_WHITE  ? &p->white[sensor][axis]
-           : kind == IMKI_BASIS_WALK ? &p->walk[sensor][axis]
-                                     : &p->scale_factor[sensor][axis];
+    return kind == IMKI_BASIS_WHITE ? &p->white[sensor][axis] : &p->walk[sensor][axis];
 }
 
 /* P_m in the mean over the windows. */
@@ -148,6 +146,27 @@ static void stated(const imk_model *model, imk_filter_parameters *p)
     }
 }
 
+/* Scale factors of a filter that estimates them: what the model states of them. @return false:
+ * nothing */
+static bool stated_scales(const imk_model *model, bool compensated, bool per_axis,
+                          double sigma[2][3])
+{
+    bool any = false;
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const imk_scale_factor *s = &imk_model_triad(model, sensor)->scale_factor;
+        double square[3], mean = 0.0;
+        for (int i = 0; i < 3; i++) {
+            const double known = compensated ? s->fixed.sigma[i] : s->fixed.value[i];
+            square[i] = known * known + s->repeatability.value[i] * s->repeatability.value[i];
+            mean += square[i] / 3.0;
+        }
+        for (int i = 0; i < 3; i++)
+            sigma[sensor][i] = sqrt(per_axis ? square[i] : mean);
+        any = any || mean > 0.0;
+    }
+    return any;
+}
+
 /* ---- fitting ---- */
 
 /* The parameters of a problem: which basis, of which sensor and axis (-1: of all three). */
@@ -155,11 +174,11 @@ typedef struct parameter {
     int kind, sensor, axis;
 } parameter;
 
-static int list_parameters(bool per_axis, bool scaled, parameter list[IMKI_PARAMETERS_MAX])
+static int list_parameters(bool per_axis, parameter list[IMKI_PARAMETERS_MAX])
 {
-    static const int kinds[3] = {IMKI_BASIS_WHITE, IMKI_BASIS_WALK, IMKI_BASIS_SCALE};
+    static const int kinds[2] = {IMKI_BASIS_WHITE, IMKI_BASIS_WALK};
     int count = 0;
-    for (int k = 0; k < (scaled ? 3 : 2); k++)
+    for (int k = 0; k < 2; k++)
         for (int sensor = 0; sensor < 2; sensor++)
             for (int axis = 0; axis < (per_axis ? 3 : 1); axis++)
                 list[count++] = (parameter){kinds[k], sensor, per_axis ? axis : -1};
@@ -235,19 +254,23 @@ static void take_theta(const imki_tuning_problem *problem, const parameter *list
 }
 
 /* Fit and safe of one kind of filter. */
-static bool solve(const imki_tuning_totals *totals, const imki_tuning_arrays *arrays, double limit,
-                  bool scaled, imk_filter_tuning *tuning)
+static bool solve(const imki_tuning_totals *totals, const imki_tuning_arrays *arrays,
+                  const imk_filter_tuning_settings *settings, const imk_model *model, bool scaled,
+                  imk_filter_tuning *tuning)
 {
     parameter list[IMKI_PARAMETERS_MAX];
     double theta[IMKI_PARAMETERS_MAX], safe[IMKI_PARAMETERS_MAX];
     imki_tuning_problem problem = {.times = totals->times,
-                                   .parameters = list_parameters(totals->per_axis, scaled, list),
+                                   .parameters = list_parameters(totals->per_axis, list),
                                    .truth = (const double(*)[9][9])totals->truth,
                                    .fixed = arrays->fixed,
                                    .basis = arrays->basis,
-                                   .limit = limit};
+                                   .limit = settings->eigen_limit};
     imk_filter_parameters fixed = {.bias_sigma = {tuning->bias_sigma[0], tuning->bias_sigma[1]}};
     const imk_filter_answer_kind kind = scaled ? IMK_FILTER_FIT_SCALED : IMK_FILTER_FIT;
+    if (scaled &&
+        !stated_scales(model, settings->compensated, totals->per_axis, fixed.scale_factor))
+        return false;
     fill_problem(totals, &fixed, list, &problem);
     if (!fit(&problem, list, theta))
         return false;
@@ -289,7 +312,8 @@ static void find_worst(const imki_tuning_totals *totals, imk_filter_tuning *tuni
 }
 
 bool imki_tuning_answers(const imki_tuning_totals *totals, const imki_tuning_arrays *arrays,
-                         const imk_model *model, double limit, imk_filter_tuning *tuning)
+                         const imk_model *model, const imk_filter_tuning_settings *settings,
+                         imk_filter_tuning *tuning)
 {
     imk_filter_parameters p = {.bias_sigma = {tuning->bias_sigma[0], tuning->bias_sigma[1]}};
     stated(model, &p);
@@ -299,9 +323,9 @@ bool imki_tuning_answers(const imki_tuning_totals *totals, const imki_tuning_arr
         p.walk[j / 3][j % 3] *= 10.0;
     }
     fill_answer(totals, arrays, IMK_FILTER_TENFOLD, &p, &tuning->answer[IMK_FILTER_TENFOLD]);
-    if (!solve(totals, arrays, limit, false, tuning))
+    if (!solve(totals, arrays, settings, model, false, tuning))
         return false;
     find_worst(totals, tuning);
-    (void)solve(totals, arrays, limit, true, tuning);
+    (void)solve(totals, arrays, settings, model, true, tuning);
     return true;
 }

@@ -22,7 +22,7 @@ enum {
     IMKI_PACKED = 45,        /* lower triangle of a covariance */
     IMKI_KINDS_OF_BASIS = 4, /* white, walk, bias, scale factor */
     IMKI_BASES = 6 * IMKI_KINDS_OF_BASIS,
-    IMKI_PARAMETERS_MAX = 18 /* white, walk and scale factor of each axis */
+    IMKI_PARAMETERS_MAX = 12 /* white and walk of each axis */
 };
 
 enum { IMKI_BASIS_WHITE = 0, IMKI_BASIS_WALK, IMKI_BASIS_BIAS, IMKI_BASIS_SCALE };
@@ -168,6 +168,7 @@ typedef struct imki_tuning_lane {
     imki_matrix9 white[6], walk[6];
     double walk_cross[6][2][9], walk_states[6][2][2];
     /* results, [time] */
+    double (*increments)[15];
     double (*total)[IMKI_PACKED], (*shift)[9]; /* covariance, and mean error */
     double (*part)[IMKI_PACKED];               /* [source * times + time] */
     double (*basis)[IMKI_PACKED];              /* [base * times + time] */
@@ -247,6 +248,7 @@ typedef struct imki_tuning_totals {
     double (*basis)[9][9];  /* [base * times + time], of each axis */
     double (*window_total)[IMKI_PACKED], (*window_shift)[9]; /* [window * times + time] */
     double (*window_basis)[IMKI_PACKED]; /* [(window * bases + base) * times + time] */
+    double (*increments)[15];            /* [window * times + time] */
     bool per_axis;
 } imki_tuning_totals;
 
@@ -265,6 +267,7 @@ typedef struct imki_tuning_arrays {
 } imki_tuning_arrays;
 
 bool imki_tuning_answers(const imki_tuning_totals *totals, const imki_tuning_arrays *arrays,
-                         const imk_model *model, double limit, imk_filter_tuning *tuning);
+                         const imk_model *model, const imk_filter_tuning_settings *settings,
+                         imk_filter_tuning *tuning);
 
 #endif

@@ -141,6 +141,17 @@ static void known_bias(const run *r, size_t motion, size_t window, size_t row, d
     }
 }
 
+/* True increments where the clock is right: those of the tuning. */
+static imki_increments known_truth(const double increments[15])
+{
+    imki_increments truth;
+    memcpy(truth.c.m, increments, sizeof truth.c.m);
+    memcpy(truth.v, increments + 9, sizeof truth.v);
+    memcpy(truth.p, increments + 12, sizeof truth.p);
+    return truth;
+}
+
+/* Else over the time that rows really took. */
 static void true_row(imki_increments *truth, const imki_exposed *e, size_t row, double h)
 {
     const size_t parts = e->parts;
@@ -180,39 +191,60 @@ static void add_clock(const run *r, size_t motion, double start, double time, do
     }
 }
 
-static void run_window(run *r, imki_scene *scene, size_t motion, size_t window, double *errors)
+/* Readings less the bias, from `done` samples of a window to `goal`. */
+static void take_readings(const run *r, size_t row, size_t done, size_t goal, const double bias[6],
+                          imki_increments *readings)
+{
+    for (; done < goal; done++) {
+        double reading[6], before[3];
+        memcpy(before, readings->v, sizeof before);
+        for (int i = 0; i < 6; i++)
+            reading[i] = r->reading[i][row + 1 + done] - bias[i];
+        imki_increments_take(readings, r->h, reading, reading + 3);
+        imki_increments_sample(readings, r->h, before);
+    }
+}
+
+static void take_truth(imki_scene *scene, size_t row, size_t done, size_t goal,
+                       imki_increments *truth)
+{
+    const size_t most = imki_tuning_rows_at_once(scene->substeps);
+    imki_exposed exposed;
+    for (; done < goal; done += exposed.rows) {
+        const size_t left = goal - done;
+        imki_tuning_expose(scene, row + 1 + done, left < most ? left : most, &exposed);
+        for (size_t k = 0; k < exposed.rows; k++)
+            true_row(truth, &exposed, k, scene->interval);
+    }
+}
+
+static void run_window(run *r, imki_scene *scene, size_t motion, size_t window,
+                       const double (*known)[15], double *errors)
 {
     const imki_tuning_grid *grid = &r->grid;
     const size_t row = imki_tuning_window(r->settings, grid, motion, window);
-    const size_t most = imki_tuning_rows_at_once(scene->substeps);
+    const bool exact = r->model->timing.rate_error.value == 0.0;
     imki_increments truth = imki_increments_start(), readings = truth;
-    imki_exposed exposed;
     double bias[6];
     size_t done = 0;
     known_bias(r, motion, window, row, bias);
     for (size_t t = 0; t < grid->time_count; t++) {
-        while (done < grid->samples[t]) {
-            const size_t left = grid->samples[t] - done, rows = left < most ? left : most;
-            imki_tuning_expose(scene, row + 1 + done, rows, &exposed);
-            for (size_t k = 0; k < rows; k++, done++) {
-                double reading[6], before[3];
-                memcpy(before, readings.v, sizeof before);
-                for (int i = 0; i < 6; i++)
-                    reading[i] = r->reading[i][row + 1 + done] - bias[i];
-                true_row(&truth, &exposed, k, scene->interval);
-                imki_increments_take(&readings, r->h, reading, reading + 3);
-                imki_increments_sample(&readings, r->h, before);
-            }
-        }
+        take_readings(r, row, done, grid->samples[t], bias, &readings);
+        if (exact)
+            truth = known_truth(known[t]);
+        else
+            take_truth(scene, row, done, grid->samples[t], &truth);
+        done = grid->samples[t];
         double *error = errors + t * IMK_TUNING_STATES;
         const double time = (double)done * r->h;
         imki_increments_error(&readings, &truth, error);
         add_clock(r, motion, scene->start + (double)row * scene->interval, time,
-                  time - (double)done * scene->interval, error);
+                  exact ? 0.0 : time - (double)done * scene->interval, error);
     }
 }
 
-static imk_status run_motion(run *r, size_t motion, double *errors, imk_error *error)
+static imk_status run_motion(run *r, size_t motion, const double (*known)[15], double *errors,
+                             imk_error *error)
 {
     imki_scene scene;
     imki_parts memory = imki_parts_of(r->scene);
@@ -226,7 +258,8 @@ static imk_status run_motion(run *r, size_t motion, double *errors, imk_error *e
         return status;
     scene.interval = r->h / (1.0 + r->model->timing.rate_error.value);
     for (size_t w = 0; w < r->settings->window_count; w++)
-        run_window(r, &scene, motion, w, errors + w * r->grid.time_count * IMK_TUNING_STATES);
+        run_window(r, &scene, motion, w, known + w * r->grid.time_count,
+                   errors + w * r->grid.time_count * IMK_TUNING_STATES);
     return IMK_OK;
 }
 
@@ -255,7 +288,8 @@ imk_status imk_filter_tuning_simulate(const imk_model *model,
     make_slow(r.slow, r.model);
     const size_t each = settings->window_count * r.grid.time_count * IMK_TUNING_STATES;
     for (size_t m = 0; m < settings->motion_count && status == IMK_OK; m++)
-        status = run_motion(&r, m, errors + m * each, error);
+        status = run_motion(&r, m, tuning->increments + m * each / IMK_TUNING_STATES,
+                            errors + m * each, error);
     return status;
 }
 

@@ -233,6 +233,9 @@ static void report(imki_tuning_lane *lane, size_t t)
     const size_t times = lane->grid->time_count;
     imki_matrix9 total = {{{0.0}}};
     double shift[9] = {0.0};
+    memcpy(lane->increments[t], lane->truth.c.m, sizeof lane->truth.c.m);
+    memcpy(lane->increments[t] + 9, lane->truth.v, sizeof lane->truth.v);
+    memcpy(lane->increments[t] + 12, lane->truth.p, sizeof lane->truth.p);
     own_sources(lane);
     for (size_t s = 0; s < drift->source_count; s++)
         add(shift, 1.0, lane->mean[s]);
