@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Draws the pictures of docs/physics and of docs/how-far-off.md with the command itself, into
-# docs/images:
+# Draws the pictures of docs/physics, docs/how-far-off.md and docs/filter-noise.md with the command
+# itself, into docs/images:
 #
 #     tools/draw_images.sh             all
 #     tools/draw_images.sh ring_laser  those whose name contains it
@@ -109,6 +109,15 @@ draw vibrating_beam-sweep vibrating_beam --sweep
 
 case drift-navigation in
     *"$only"*) "$imukit" drift navigation --plot "$images/drift-navigation.svg" >"$images/.draw.log" ;;
+esac
+
+case tune-tactical in
+    *"$only"*) # on the motion of its page
+        sed -n '/^cat > build.walk.yaml/,/^END/p' docs/filter-noise.md | sed '1d;$d' >"$images/.walk.yaml"
+        "$imukit" tune tactical "$images/.walk.yaml" --plot "$images/tune-tactical.svg" \
+            >"$images/.draw.log"
+        rm "$images/.walk.yaml"
+        ;;
 esac
 
 for map in gyro accel cost sensor-cost; do

@@ -139,9 +139,6 @@ static void add_number(const imk_tune_model *r, int kind, int column, imk_table 
 /* What a filter is to be given, and by how much that is more than what is stated. */
 static void show_numbers(const imk_tune_model *r, imk_result *result)
 {
-    bool scaled = false;
-    for (int kind = IMK_FILTER_FIT_SCALED; kind < IMK_FILTER_ANSWERS; kind++)
-        scaled = scaled || r->tuning->answer[kind].found;
     imk_result_gap(result);
     imk_result_heading(result, "Noise of the filter");
     imk_table *table = imk_result_table(result, ~1u);
@@ -150,8 +147,6 @@ static void show_numbers(const imk_tune_model *r, imk_result *result)
         imk_table_add(table, "\t%s [%s]\t", imki_tune_units[column].name,
                       imki_tune_units[column].unit);
     imk_table_add(table, "\tmean NEES");
-    if (scaled)
-        imk_table_add(table, "\tgyro scale factor [ppm]\taccel scale factor [ppm]");
     for (int kind = 0; kind < IMK_FILTER_ANSWERS; kind++) {
         const imk_filter_answer *a = &r->tuning->answer[kind];
         if (!a->found)
@@ -160,12 +155,14 @@ static void show_numbers(const imk_tune_model *r, imk_result *result)
         for (int column = 0; column < 4; column++)
             add_number(r, kind, column, table);
         imk_table_add(table, "\t%.3g", a->mean_nees);
-        if (scaled && kind >= IMK_FILTER_FIT_SCALED)
-            imk_table_add(table, "\t%.3g\t%.3g", 1e6 * rms(a->parameters.scale_factor[0]),
-                          1e6 * rms(a->parameters.scale_factor[1]));
-        else if (scaled)
-            imk_table_add(table, "\t-\t-");
     }
+    const imk_filter_answer *scaled = &r->tuning->answer[IMK_FILTER_FIT_SCALED];
+    if (scaled->found)
+        imk_result_line(result,
+                        "scale factors as states: %.3g and %.3g ppm of gyros and "
+                        "accelerometers at the start (1 sigma)",
+                        1e6 * rms(scaled->parameters.scale_factor[0]),
+                        1e6 * rms(scaled->parameters.scale_factor[1]));
 }
 
 /* The runs are shown of two answers; the data have all. */
@@ -294,7 +291,7 @@ void imk_tune_verdict(const imk_tune_model *r, char *text, size_t size)
     range_of(r, IMK_FILTER_FIT, &low, &high);
     int used =
         snprintf(text, size,
-                 "no constant noise describes these errors: the NEES of the fit is %.2g to "
+                 "no constant noise describes these errors: the NEES of the fit is %.3g to "
                  "%.2g. The largest of them where it is highest is %s: calibrate or estimate "
                  "it, or take \"safe\"",
                  low, high, tuning->source[tuning->worst_source].text);
@@ -302,7 +299,7 @@ void imk_tune_verdict(const imk_tune_model *r, char *text, size_t size)
         return;
     range_of(r, IMK_FILTER_FIT_SCALED, &low, &high);
     snprintf(text + used, size - (size_t)used,
-             ". With scale factors among the states of the filter it is %.2g to %.2g", low, high);
+             ". With scale factors among the states of the filter it is %.3g to %.3g", low, high);
 }
 
 void imk_show_tune(const imk_tune_model *r, imk_result *result)
