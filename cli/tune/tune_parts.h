@@ -12,7 +12,7 @@
 enum { TUNE_OPERANDS = 1 + IMK_TUNING_MOTIONS_MAX };
 
 typedef struct tune_options {
-    double rate, from, to, bias[2], bias_time, latitude, height, frame_rate;
+    double rate, from, to, bias[2], bias_time, correlation_time, latitude, height, frame_rate;
     option_integer windows, runs, seed, threads;
     int answer, format; /* in the order of the choices */
     bool compensated, per_axis, json;

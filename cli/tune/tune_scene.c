@@ -74,6 +74,7 @@ int tune_scene_open(tune_work *w)
             s->bias_sigma[sensor] = o->bias[sensor];
     if (!isnan(o->bias_time))
         s->bias_time = o->bias_time;
+    s->correlation_time = o->correlation_time;
     s->compensated = o->compensated;
     s->per_axis = o->per_axis;
     w->settings.run_count = (uint32_t)o->runs.value;

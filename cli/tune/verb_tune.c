@@ -35,6 +35,9 @@ static const option tune_option_table[] = {
     {"bias-time", OPTION_QUANTITY, AT(bias_time), .value = "TIME", .unit = "s",
      .choices = "0..10000",
      .help = "the bias that the filter knows is a mean over this time; default 1s"},
+    {"correlation-time", OPTION_QUANTITY, AT(correlation_time), .value = "TIME", .unit = "s",
+     .choices = "1..1e9",
+     .help = "the filter's biases are Gauss-Markov processes of this time; default: random walks"},
     {"compensated", OPTION_FLAG, AT(compensated),
      .help = "known values of the model are taken out of the readings, and their uncertainty "
              "stays"},

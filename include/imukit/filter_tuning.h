@@ -49,6 +49,9 @@ typedef struct imk_filter_tuning_settings {
      *  m/s^2], in the truth and in the filter; negative (default): the Allan deviation of the
      *  worst axis at 100 s. */
     double bias_sigma[2];
+    /** Correlation time of the filter's biases [s], 1 … 1e9; 0 (default): they are random walks.
+     * The bias known is held over a window, as a filter's mean does over times much shorter. */
+    double correlation_time;
     bool compensated;   /**< as in imk_drift_settings */
     bool per_axis;      /**< numbers of each axis, not of a triad; default false */
     double eigen_limit; /**< of the safe answer, > 0: largest eigenvalue of P_m^-1 P_t; 1.05 */
@@ -69,8 +72,10 @@ IMK_API imk_status imk_filter_tuning_validate(const imk_model *model,
 /** Numbers of a filter, two-sided densities; [IMK_GYRO or IMK_ACCEL][axis]. */
 typedef struct imk_filter_parameters {
     double white[2][3];        /**< N [unit/sqrt(Hz)] */
-    double walk[2][3];         /**< K of the bias [unit/sqrt(s)] */
+    double walk[2][3];         /**< K of the bias [unit/sqrt(s)]; of a Gauss-Markov process its
+                                  driving noise, sigma sqrt(2/T) */
     double bias_sigma[2];      /**< 1 sigma of the bias at the beginning [unit] */
+    double correlation_time;   /**< T of the biases [s]; 0: random walks */
     double scale_factor[2][3]; /**< 1 sigma of scale factors estimated besides [1]; 0: no states */
 } imk_filter_parameters;
 

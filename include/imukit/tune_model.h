@@ -51,8 +51,9 @@ IMK_API imk_status imk_tune_model_run(const imk_model *model, const char *name,
 /** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_tune_model_free(imk_tune_model *result);
 
-/** A model that states the numbers of an answer, for a file: white noise and random walk; the bias
- *  at the beginning as its repeatability; scale factors of the filter as theirs.
+/** A model that states the numbers of an answer, for a file: white noise, and random walk or
+ *  Gauss-Markov process; the bias at the beginning as its repeatability; scale factors of the
+ *  filter as theirs.
  *  @param made  the model
  *  @return IMK_ERROR_EMPTY: the answer was not found */
 IMK_API imk_status imk_tune_model_answer(const imk_tune_model *tune, imk_filter_answer_kind kind,

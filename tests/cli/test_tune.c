@@ -102,6 +102,10 @@ static void test_files(void **state)
     check_contains(out, "Noise of the filter\n", "tune");
     check_contains(out, "accelerometer misalignment", "tune");
     assert_int_equal(run("$I grade filter.yaml"), 0);
+    assert_int_equal(run("$I tune unit.yaml turn.yaml --correlation-time 300s -o gm.json" SMALL),
+                     0);
+    read_text("gm.json", text);
+    check_contains(text, "\"correlation_time\": \"300 s\"", "gm.json");
     read_text("filter.yaml", text);
     check_contains(text, "noise of a filter, not of a sensor", "filter.yaml");
 }

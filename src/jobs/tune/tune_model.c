@@ -173,7 +173,13 @@ imk_status imk_tune_model_answer(const imk_tune_model *tune, imk_filter_answer_k
         triad->noise.density = IMK_DENSITY_TWO_SIDED;
         for (int axis = 0; axis < 3; axis++) {
             triad->noise.white.value[axis] = p->white[sensor][axis];
-            triad->noise.random_walk.value[axis] = p->walk[sensor][axis];
+            if (p->correlation_time > 0.0) {
+                triad->noise.gauss_markov_count = 1;
+                triad->noise.gauss_markov[0].sigma.value[axis] =
+                    p->walk[sensor][axis] * sqrt(0.5 * p->correlation_time);
+                triad->noise.gauss_markov[0].correlation_time.value[axis] = p->correlation_time;
+            } else
+                triad->noise.random_walk.value[axis] = p->walk[sensor][axis];
             triad->bias.repeatability.value[axis] = p->bias_sigma[sensor];
             triad->scale_factor.repeatability.value[axis] = p->scale_factor[sensor][axis];
         }

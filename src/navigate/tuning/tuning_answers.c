@@ -266,7 +266,8 @@ static bool solve(const imki_tuning_totals *totals, const imki_tuning_arrays *ar
                                    .fixed = arrays->fixed,
                                    .basis = arrays->basis,
                                    .limit = settings->eigen_limit};
-    imk_filter_parameters fixed = {.bias_sigma = {tuning->bias_sigma[0], tuning->bias_sigma[1]}};
+    imk_filter_parameters fixed = {.bias_sigma = {tuning->bias_sigma[0], tuning->bias_sigma[1]},
+                                   .correlation_time = settings->correlation_time};
     const imk_filter_answer_kind kind = scaled ? IMK_FILTER_FIT_SCALED : IMK_FILTER_FIT;
     if (scaled &&
         !stated_scales(model, settings->compensated, totals->per_axis, fixed.scale_factor))
@@ -315,7 +316,8 @@ bool imki_tuning_answers(const imki_tuning_totals *totals, const imki_tuning_arr
                          const imk_model *model, const imk_filter_tuning_settings *settings,
                          imk_filter_tuning *tuning)
 {
-    imk_filter_parameters p = {.bias_sigma = {tuning->bias_sigma[0], tuning->bias_sigma[1]}};
+    imk_filter_parameters p = {.bias_sigma = {tuning->bias_sigma[0], tuning->bias_sigma[1]},
+                               .correlation_time = settings->correlation_time};
     stated(model, &p);
     fill_answer(totals, arrays, IMK_FILTER_STATED, &p, &tuning->answer[IMK_FILTER_STATED]);
     for (int j = 0; j < 6; j++) {

@@ -82,6 +82,15 @@ static imki_sampled first_order_of(double variance, double time, double h, doubl
         .start = {{variance * lost * lost + apart, both}, {both, variance * kept * kept + apart}}};
 }
 
+/* Of a filter's bias with this correlation time, unit driving noise, from its known value: in h it
+ * gains T/2 (1 - e^(-2 h/T)). */
+static imki_sampled first_order_from(double time, double h)
+{
+    const double f = imk_exp(-h / time), gain = sqrt(-0.5 * time * imk_expm1(-2.0 * h / time));
+    return (imki_sampled){
+        .states = 1, .a = {{f, 0.0}, {0.0, 0.0}}, .b = {gain, 0.0}, .c = {f, 0.0}, .d = gain};
+}
+
 /* y = a1 y1 + a2 y2 + b0 e + b1 e1 + b2 e2, stationary: Z = a Z a^T + b b^T, by doubling. */
 static imki_sampled arma_of(const imk_arma *arma)
 {
@@ -257,6 +266,8 @@ imk_status imki_tuning_plan_make(imki_tuning_plan *plan, const imk_model *model,
     imki_drift_add_source(&plan->drift, "motion", "sampling", "",
                           "coning and sculling within samples");
     plan->white = white_of(1.0 / sqrt(plan->h));
-    plan->walk = walk_of(sqrt(plan->h), 1.0);
+    plan->walk = settings->correlation_time > 0.0
+                     ? first_order_from(settings->correlation_time, plan->h)
+                     : walk_of(sqrt(plan->h), 1.0);
     return IMK_OK;
 }

@@ -127,6 +127,8 @@ static imk_status check_numbers(const imk_filter_tuning_settings *s, imk_error *
                       "1 to 256 windows of a motion, at most 1024 of all");
     if (!(s->bias_time >= 0.0 && s->bias_time <= 1e4))
         return refuse(error, "bias_time", s->bias_time, "0 s to 1e4 s");
+    if (s->correlation_time != 0.0 && !(s->correlation_time >= 1.0 && s->correlation_time <= 1e9))
+        return refuse(error, "correlation_time", s->correlation_time, "0, or 1 s to 1e9 s");
     for (int i = 0; i < 2; i++)
         if (!(s->bias_sigma[i] <= 1e6) || isinf(s->bias_sigma[i]))
             return refuse(error, "bias_sigma", s->bias_sigma[i], "a standard deviation");

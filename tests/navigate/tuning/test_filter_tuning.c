@@ -109,6 +109,33 @@ static void test_own_numbers(void **state)
     free(s.memory);
 }
 
+/* A Gauss-Markov process that is known at the beginning, of a correlation time much longer than the
+ * window: driving noise sigma sqrt(2/T), and (t/T)/2 less than a random walk. */
+static void test_gauss_markov(void **state)
+{
+    (void)state;
+    scene s;
+    stand(&s, true, 50.0);
+    shake(&s);
+    s.settings.bias_time = 0.0;
+    s.settings.correlation_time = 200.0;
+    set_all(&s.model.gyro.noise.white, 2e-3);
+    set_all(&s.model.accel.noise.white, 1e-2);
+    s.model.gyro.noise.gauss_markov_count = s.model.accel.noise.gauss_markov_count = 1;
+    set_all(&s.model.gyro.noise.gauss_markov[0].sigma, 3e-3);
+    set_all(&s.model.gyro.noise.gauss_markov[0].correlation_time, 200.0);
+    set_all(&s.model.accel.noise.gauss_markov[0].sigma, 2e-2);
+    set_all(&s.model.accel.noise.gauss_markov[0].correlation_time, 200.0);
+    tune(&s, NULL);
+    const imk_filter_parameters *fit = &s.tuning->answer[IMK_FILTER_FIT].parameters;
+    /* The known bias decays in the model and is held in the filter: sigma^2 (t/T)^2 of 2 t/T. */
+    CHECK_RELATIVE(fit->walk[0][0], 3e-3 * sqrt(2.0 / 200.0), 0.02);
+    CHECK_RELATIVE(fit->walk[1][0], 2e-2 * sqrt(2.0 / 200.0), 0.02);
+    CHECK_RELATIVE(fit->white[0][0], 2e-3, 5e-3);
+    CHECK_CLOSE(fit->correlation_time, 200.0, 0.0);
+    free(s.memory);
+}
+
 /* Of white noise at rest, n samples of h, with force g along z: attitude N^2 t, horizontal velocity
  * g^2 N^2 t^3/3, position g^2 N^2 t^5/20, as continuous time has them. */
 static void test_closed_forms(void **state)
@@ -360,9 +387,9 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_own_numbers), cmocka_unit_test(test_closed_forms),
-        cmocka_unit_test(test_runs),        cmocka_unit_test(test_inconstant),
-        cmocka_unit_test(test_axes),        cmocka_unit_test(test_recorded),
-        cmocka_unit_test(test_refusals)};
+        cmocka_unit_test(test_own_numbers),  cmocka_unit_test(test_gauss_markov),
+        cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_runs),
+        cmocka_unit_test(test_inconstant),   cmocka_unit_test(test_axes),
+        cmocka_unit_test(test_recorded),     cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

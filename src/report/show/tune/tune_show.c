@@ -67,6 +67,10 @@ static void show_answer(const imk_tune_model *r, int kind, imk_result *result)
         imk_result_object(result, sensors[sensor]);
         show_three("white", a->parameters.white[sensor], si[sensor][0], result);
         show_three("random_walk", a->parameters.walk[sensor], si[sensor][1], result);
+        if (a->parameters.correlation_time > 0.0)
+            imk_result_quantity(result, "correlation_time", a->parameters.correlation_time, "s");
+        else
+            imk_result_null(result, "correlation_time");
         imk_result_quantity(result, "bias_sigma", a->parameters.bias_sigma[sensor],
                             bias_unit[sensor]);
         show_three("scale_factor_sigma", a->parameters.scale_factor[sensor], "1", result);
@@ -156,6 +160,12 @@ static void show_numbers(const imk_tune_model *r, imk_result *result)
             add_number(r, kind, column, table);
         imk_table_add(table, "\t%.3g", a->mean_nees);
     }
+    const double time = r->settings.tuning.correlation_time;
+    if (time > 0.0)
+        imk_result_line(result,
+                        "K: driving noise of biases that are Gauss-Markov processes of %g s; their "
+                        "sigma is K sqrt(%g s)",
+                        time, 0.5 * time);
     const imk_filter_answer *scaled = &r->tuning->answer[IMK_FILTER_FIT_SCALED];
     if (scaled->found)
         imk_result_line(result,
