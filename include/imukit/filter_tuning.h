@@ -6,8 +6,8 @@
  *
  *  What is compared is the error of increments (attitude, velocity, position) that are integrated
  *  over a time tau from readings, less a bias known at the beginning: P_t(tau), from all errors of
- *  a sensor model on the motion, with the covariance P_m(tau) that the filter computes from its
- * four numbers. Both are means over windows that begin along the motion, in the body axes of the
+ *  a sensor model on the motion, with the covariance P_m(tau) that the filter computes from four
+ *  numbers. Both are means over windows that begin along the motion, in the body axes of the
  *  beginning; P_t is about zero, with the mean error in it.
  *
  *  The bias known at the beginning of a window is the mean of what the model's slow terms (fixed
