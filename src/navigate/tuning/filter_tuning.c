@@ -28,6 +28,7 @@ static void take_lane(imki_parts *memory, imki_tuning_lane *lane, size_t element
     imki_tuning_lane made = {.motion = 0};
     made.perfect = imki_take(memory, sizeof *made.perfect);
     made.scene_memory = imki_take(memory, IMKI_SCENE_SIZE + 2 * IMKI_ALIGNMENT_SLACK);
+    made.part_state = imki_take(memory, IMK_SUBSTEPS_MAX * sizeof *made.part_state);
     made.value = imki_take(memory, elements * sizeof *made.value);
     made.driver = imki_take(memory, elements * sizeof *made.driver);
     made.offset = imki_take(memory, elements * sizeof *made.offset);

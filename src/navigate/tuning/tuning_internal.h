@@ -152,7 +152,8 @@ typedef struct imki_tuning_lane {
     imk_model *perfect; /* scratch */
     void *scene_memory; /* IMKI_SCENE_SIZE and slack */
     imki_scene scene;
-    imki_exposed exposed; /* rows of the chunk */
+    imki_exposed exposed;         /* rows of the chunk */
+    imk_motion_state *part_state; /* of the parts of a row: inputs alone */
     imki_increments truth, readings;
     double gravity[3], speed[3]; /* at the window's start, in its axes */
     double peak[2][3];           /* largest inputs seen */

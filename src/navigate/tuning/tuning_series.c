@@ -63,9 +63,8 @@ static double drive(imki_tuning_lane *lane, size_t element)
 
 void imki_tuning_series(imki_tuning_lane *lane)
 {
-    imk_motion_state state[IMK_SUBSTEPS_MAX];
+    imk_motion_state *state = lane->part_state;
     const imki_exposed *exposed = &lane->exposed;
-    memset(state, 0, exposed->parts * sizeof *state);
     for (size_t row = 0; row < exposed->rows; row++) {
         for (size_t j = 0; j < exposed->parts; j++)
             state_at(exposed, row * exposed->parts + j, &state[j]);
