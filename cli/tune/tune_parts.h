@@ -15,7 +15,7 @@ typedef struct tune_options {
     double rate, from, to, bias[2], bias_time, correlation_time, latitude, height, frame_rate;
     option_integer windows, runs, seed, threads;
     int answer, format; /* in the order of the choices */
-    bool compensated, per_axis, json;
+    bool learned, compensated, per_axis, json;
     const char *output, *plot, *report;
     term_selection terms;
 } tune_options;

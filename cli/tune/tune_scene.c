@@ -75,6 +75,7 @@ int tune_scene_open(tune_work *w)
     if (!isnan(o->bias_time))
         s->bias_time = o->bias_time;
     s->correlation_time = o->correlation_time;
+    s->learned = o->learned;
     s->compensated = o->compensated;
     s->per_axis = o->per_axis;
     w->settings.run_count = (uint32_t)o->runs.value;

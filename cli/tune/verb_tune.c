@@ -35,6 +35,9 @@ static const option tune_option_table[] = {
     {"bias-time", OPTION_QUANTITY, AT(bias_time), .value = "TIME", .unit = "s",
      .choices = "0..10000",
      .help = "the bias that the filter knows is a mean over this time; default 1s"},
+    {"learned", OPTION_FLAG, AT(learned),
+     .help = "the bias that the filter knows is the mean of all slow errors of the readings, as a "
+             "filter with updates learns it; default: of the bias terms alone"},
     {"correlation-time", OPTION_QUANTITY, AT(correlation_time), .value = "TIME", .unit = "s",
      .choices = "1..1e9",
      .help = "the filter's biases are Gauss-Markov processes of this time; default: random walks"},

@@ -52,6 +52,11 @@ typedef struct imk_filter_tuning_settings {
     /** Correlation time of the filter's biases [s], 1 … 1e9; 0 (default): they are random walks.
      * The bias known is held over a window, as a filter's mean does over times much shorter. */
     double correlation_time;
+    /** False (default): the bias known is that of the terms of bias. True: it is the mean of all
+     *  errors of the readings that are not fast noise or of the clock, as a filter with updates
+     * learns it: a scale factor on gravity, for example, counts only as far as the attitude
+     * changes. */
+    bool learned;
     bool compensated;   /**< as in imk_drift_settings */
     bool per_axis;      /**< numbers of each axis, not of a triad; default false */
     double eigen_limit; /**< of the safe answer, > 0: largest eigenvalue of P_m^-1 P_t; 1.05 */

@@ -32,6 +32,8 @@ static void take_lane(imki_parts *memory, imki_tuning_lane *lane, size_t element
     made.value = imki_take(memory, elements * sizeof *made.value);
     made.driver = imki_take(memory, elements * sizeof *made.driver);
     made.offset = imki_take(memory, elements * sizeof *made.offset);
+    made.learned = imki_take(memory, elements * sizeof *made.learned);
+    made.sum = imki_take(memory, elements * sizeof *made.sum);
     made.limit = imki_take(memory, elements * sizeof *made.limit);
     made.size = imki_take(memory, elements * sizeof *made.size);
     made.cross = imki_take(memory, elements * sizeof *made.cross);

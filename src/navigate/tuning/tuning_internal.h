@@ -158,7 +158,7 @@ typedef struct imki_tuning_lane {
     double gravity[3], speed[3]; /* at the window's start, in its axes */
     double peak[2][3];           /* largest inputs seen */
     /* [element] */
-    double (*value)[IMKI_TUNING_ROWS], (*driver)[2], *offset;
+    double (*value)[IMKI_TUNING_ROWS], (*driver)[2], *offset, *learned, *sum;
     imki_band_limit *limit;
     double (*size)[9], (*cross)[2][9], (*states)[2][2];
     /* [source] */

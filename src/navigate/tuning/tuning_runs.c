@@ -41,17 +41,25 @@ static imk_simulation simulation_of(const run *r, size_t motion, bool slow)
     simulation.rate = r->settings->rate;
     simulation.seed = r->random.seed;
     simulation.run = r->number;
-    if (slow)
+    if (slow && !r->settings->learned)
         simulation.earth = false;
     else
         simulation.motion = r->settings->motion[motion];
     return simulation;
 }
 
-/* What a filter takes for bias, and nothing else. */
-static void make_slow(imk_model *slow, const imk_model *model)
+/* What a filter takes for bias, and nothing else; where it learns, with all that is no noise. */
+static void make_slow(imk_model *slow, const imk_model *model, bool learned)
 {
     imk_model_default(slow);
+    for (int sensor = 0; sensor < 2 && learned; sensor++) {
+        imk_triad *to = imk_model_triad_to_set(slow, sensor);
+        *to = *imk_model_triad(model, sensor);
+        memset(&to->noise, 0, sizeof to->noise);
+        memset(&to->sensitivity, 0, sizeof to->sensitivity);
+        memset(&to->zero_offset, 0, sizeof to->zero_offset);
+        memset(&to->resolution, 0, sizeof to->resolution);
+    }
     for (int sensor = 0; sensor < 2; sensor++) {
         const imk_triad *from = imk_model_triad(model, sensor);
         imk_triad *to = imk_model_triad_to_set(slow, sensor);
@@ -78,7 +86,7 @@ static run lay_out(const imk_model *model, const imk_filter_tuning_settings *set
     r.scene = imki_take(&parts, IMKI_SCENE_SIZE + 2 * IMKI_ALIGNMENT_SLACK);
     /* A part of the model needs no more than the whole. */
     for (int which = 0; which < 2; which++) {
-        const imk_simulation simulation = simulation_of(&r, 0, which == 1);
+        const imk_simulation simulation = simulation_of(&r, 0, which == 1 && !settings->learned);
         r.simulator_size[which] = imk_simulator_size(model, &simulation) + IMKI_SCENE_SIZE;
         r.simulator[which] = imki_take(&parts, r.simulator_size[which]);
     }
@@ -110,11 +118,10 @@ static void divide_counts(const imk_model *model, double *const *column, size_t 
     }
 }
 
-static imk_status simulate(run *r, size_t motion, bool slow, imk_error *error)
+static imk_status simulate(run *r, const imk_model *model, size_t motion, bool slow,
+                           double *const *column, imk_error *error)
 {
     const imk_simulation simulation = simulation_of(r, motion, slow);
-    const imk_model *model = slow ? r->slow : r->model;
-    double *const *column = slow ? r->bias : r->reading;
     imk_simulator *simulator;
     const size_t rows = (r->grid.rows[motion] + ROWS) / ROWS * ROWS;
     const imk_status status = imki_simulator_start(r->simulator[slow], r->simulator_size[slow],
@@ -248,9 +255,16 @@ static imk_status run_motion(run *r, size_t motion, const double (*known)[15], d
 {
     imki_scene scene;
     imki_parts memory = imki_parts_of(r->scene);
-    imk_status status = simulate(r, motion, false, error);
+    imk_status status = simulate(r, r->slow, motion, true, r->bias, error);
+    if (status == IMK_OK && r->settings->learned) {
+        imk_model_default(r->perfect);
+        status = simulate(r, r->perfect, motion, true, r->reading, error);
+        for (int i = 0; i < 6 && status == IMK_OK; i++)
+            for (size_t k = 0; k < r->grid.rows[motion]; k++)
+                r->bias[i][k] -= r->reading[i][k];
+    }
     if (status == IMK_OK)
-        status = simulate(r, motion, true, error);
+        status = simulate(r, r->model, motion, false, r->reading, error);
     if (status == IMK_OK)
         status = imki_tuning_scene_start(&scene, r->perfect, r->model, r->settings, motion, &memory,
                                          error);
@@ -285,7 +299,7 @@ imk_status imk_filter_tuning_simulate(const imk_model *model,
     memcpy(r.model, model, sizeof *model);
     if (settings->compensated)
         imki_drift_residual(r.model, r.random, number);
-    make_slow(r.slow, r.model);
+    make_slow(r.slow, r.model, settings->learned);
     const size_t each = settings->window_count * r.grid.time_count * IMK_TUNING_STATES;
     for (size_t m = 0; m < settings->motion_count && status == IMK_OK; m++)
         status = run_motion(&r, m, tuning->increments + m * each / IMK_TUNING_STATES,

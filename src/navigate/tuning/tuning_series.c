@@ -70,7 +70,8 @@ void imki_tuning_series(imki_tuning_lane *lane)
             state_at(exposed, row * exposed->parts + j, &state[j]);
         for (size_t i = 0; i < lane->plan->drift.element_count; i++)
             if (imki_tuning_has_series(lane->plan, i))
-                lane->value[i][row] = drive(lane, i) * mean_factor(lane, i, state);
+                lane->value[i][row] =
+                    drive(lane, i) * mean_factor(lane, i, state) - lane->learned[i];
     }
 }
 
@@ -116,22 +117,43 @@ static void start_driver(imki_tuning_lane *lane, size_t i, size_t row)
                       (imk_expm1(-n * h / time) / (n * imk_expm1(-h / time)));
 }
 
+/* Rows of the chunk from `begin` on add to what is learned, but of what is taken against its mean
+ * anyway. */
+static void add_learned(imki_tuning_lane *lane, size_t first, size_t begin)
+{
+    const imki_tuning_plan *plan = lane->plan;
+    for (size_t i = 0; i < plan->drift.element_count; i++) {
+        const imki_drift_element *element = &plan->drift.element[i];
+        const bool one = plan->drift.column[element->column].kind == IMKI_COLUMN_ONE;
+        for (size_t k = 0; k < lane->exposed.rows && !one && imki_tuning_has_series(plan, i); k++)
+            if (first + k >= begin)
+                lane->sum[i] += lane->value[i][k];
+    }
+}
+
 imk_status imki_tuning_series_start(imki_tuning_lane *lane, size_t row)
 {
-    const size_t settle = lane->grid->settle;
+    const size_t learning = lane->settings->learned ? lane->plan->bias_samples : 0;
+    const size_t lead = lane->grid->settle + learning;
     const imk_status status = start_limits(lane);
     if (status != IMK_OK)
         return imk_error_set(&lane->error, status, "bandwidth", "",
                              "a bandwidth that fits the sample rate");
-    for (size_t i = 0; i < lane->plan->drift.element_count; i++)
+    const size_t elements = lane->plan->drift.element_count;
+    memset(lane->learned, 0, elements * sizeof *lane->learned);
+    memset(lane->sum, 0, elements * sizeof *lane->sum);
+    for (size_t i = 0; i < elements; i++)
         start_driver(lane, i, row);
     const size_t most = imki_tuning_rows_at_once(lane->scene.substeps);
-    for (size_t first = row + 1 - settle; first <= row; first += lane->exposed.rows) {
+    for (size_t first = row + 1 - lead; first <= row; first += lane->exposed.rows) {
         const size_t left = row + 1 - first;
         imki_tuning_expose(&lane->scene, first, left < most ? left : most, &lane->exposed);
         imki_tuning_series(lane);
+        add_learned(lane, first, row + 1 - learning);
     }
-    for (size_t i = 0; i < lane->plan->drift.element_count && settle > 0; i++)
+    for (size_t i = 0; i < elements; i++) {
         start_driver(lane, i, row);
+        lane->learned[i] = learning > 0 ? lane->sum[i] / (double)learning : 0.0;
+    }
     return IMK_OK;
 }

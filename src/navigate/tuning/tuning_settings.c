@@ -71,6 +71,8 @@ void imki_tuning_grid_of(const imk_model *model, const imk_filter_tuning_setting
     const size_t settle = rows_to_settle(model, s->rate);
     grid->settle = settle;
     grid->lead = settle > grid->bias_samples ? settle : grid->bias_samples;
+    if (s->learned)
+        grid->lead = settle + grid->bias_samples;
     size_t least = SIZE_MAX;
     for (size_t m = 0; m < s->motion_count; m++) {
         grid->rows[m] = rows_of(s, m);

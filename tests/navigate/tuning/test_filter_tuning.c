@@ -207,9 +207,8 @@ static void make_lively(imk_model *model)
 
 /* Means of the runs against the prediction: the largest of all differences in standard errors is
  * beyond the limit in one of 1000 sets of runs. */
-static void test_runs(void **state)
+static void check_runs_of(bool learned)
 {
-    (void)state;
     const uint32_t runs = check_runs(400);
     scene s;
     stand(&s, true, 50.0);
@@ -221,6 +220,7 @@ static void test_runs(void **state)
     s.settings.to = 2.0;
     s.settings.per_decade = 2;
     s.settings.bias_time = 0.5;
+    s.settings.learned = learned;
     s.settings.bias_sigma[0] = 1e-3;
     s.settings.bias_sigma[1] = 1e-2;
     tune(&s, NULL);
@@ -249,6 +249,18 @@ static void test_runs(void **state)
     free(errors);
     free(workspace);
     free(s.memory);
+}
+
+static void test_runs(void **state)
+{
+    (void)state;
+    check_runs_of(false);
+}
+
+static void test_learned_runs(void **state)
+{
+    (void)state;
+    check_runs_of(true);
 }
 
 /* ---- what no constant noise describes ---- */
@@ -389,7 +401,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_own_numbers),  cmocka_unit_test(test_gauss_markov),
         cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_runs),
-        cmocka_unit_test(test_inconstant),   cmocka_unit_test(test_axes),
-        cmocka_unit_test(test_recorded),     cmocka_unit_test(test_refusals)};
+        cmocka_unit_test(test_learned_runs), cmocka_unit_test(test_inconstant),
+        cmocka_unit_test(test_axes),         cmocka_unit_test(test_recorded),
+        cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -98,6 +98,7 @@ static void show_data(const imk_tune_model *r, imk_result *result)
     imk_result_quantity(result, "bias_time", s->bias_time, "s");
     imk_result_quantity(result, "gyro_bias_sigma", tuning->bias_sigma[0], bias_unit[0]);
     imk_result_quantity(result, "accel_bias_sigma", tuning->bias_sigma[1], bias_unit[1]);
+    imk_result_flag(result, "learned", s->learned);
     imk_result_flag(result, "compensated", s->compensated);
     imk_result_count(result, "runs", (long long)r->settings.run_count);
     imk_result_end(result);
@@ -325,6 +326,8 @@ void imk_show_tune(const imk_tune_model *r, imk_result *result)
     imk_result_line(result, "  the bias is known to %.3g deg/h and %.3g ug (1 sigma), from %g s",
                     tuning->bias_sigma[0] / imk_unit_of("deg/h").scale,
                     tuning->bias_sigma[1] / imk_unit_of("ug").scale, r->settings.tuning.bias_time);
+    if (r->settings.tuning.learned)
+        imk_result_line(result, "  it is learned: the mean of all slow errors of the readings");
     if (tuning->short_count > 0)
         imk_result_line(result, "  left out: %zu time%s below two samples", tuning->short_count,
                         tuning->short_count > 1 ? "s" : "");
