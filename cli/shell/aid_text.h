@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Aids of a navigator as texts. */
-#ifndef IMUKIT_AID_TEXT_H
-#define IMUKIT_AID_TEXT_H
+#ifndef IMUKIT_SHELL_AID_TEXT_H
+#define IMUKIT_SHELL_AID_TEXT_H
 
 #include "command.h"
 

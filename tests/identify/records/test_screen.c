@@ -46,7 +46,7 @@ static void make(uint32_t run, double white, double flicker, double walk)
     memset(rate, 0, sizeof rate);
     imk_white_start(&w, white, 1, random, imk_stream(run, 1, 0, 0));
     imk_white_add(&w, N, rate);
-    imk_flicker_start(&f, flicker, 1, random, imk_stream(run, 2, 0, 0));
+    imk_flicker_start(&f, (imk_flicker){flicker, 0}, 1, random, imk_stream(run, 2, 0, 0));
     imk_flicker_add(&f, N, rate);
     imk_random_walk_start(&k, walk, 1, random, imk_stream(run, 3, 0, 0));
     imk_random_walk_add(&k, N, rate);
