@@ -40,11 +40,12 @@ PUBLIC = {
     "compensate": "compensate firmware",
     "calibrate": "axes_mending calibration calibration_plan evaluate ferraris magnetometer procedure "
                  "reference_alignment repeatability static_detection test_record thermal",
-    "navigate": "aiding alignment drift navigate navigation_filter standstill",
+    "navigate": "aiding alignment drift navigate navigation_filter navigation_smoother "
+                "standing_start standstill",
     "physics": "instrument laboratory",  # and of each folder of src/physics
     "report": "report result show",
     "io": "campaign design_file figure_file firmware_file io log memory_limit model_file "
-          "motion_file output_file parameter_file thread_pool",
+          "aid_text motion_file output_file parameter_file thread_pool",
 }
 MODULE_OF = {name: module for module, names in PUBLIC.items() for name in names.split()}
 # Headers that gather others, for users: each public header is in one of them.

@@ -116,13 +116,7 @@ static int read_start(const drift_options *o, imk_drift_settings *s)
 
 /* ---- times ---- */
 
-typedef struct stated {
-    size_t count;
-    double at[IMK_DRIFT_ROWS_MAX];
-} stated;
-
-/* --times "1min, 10 min, 1h" */
-static int stated_times(const char *text, stated *t)
+int drift_stated_times(const char *name, const char *text, drift_stated *t)
 {
     const double latest = 1e8; /* [s]: imk_drift_validate() */
     for (const char *begin = text; *begin;) {
@@ -132,11 +126,11 @@ static int stated_times(const char *text, stated *t)
         if (imk_quantity_parse(begin, begin + length, imk_unit_of("s").dimension, 1, &value, &sigma,
                                &count, NULL, NULL) != IMK_OK ||
             count != 1 || !(value > 0 && value <= latest))
-            return command_misused("--times \"%s\": \"%.*s\" is not a positive time with a unit; "
-                                   "write --times \"1min, 10min, 1h\"",
-                                   text, (int)length, begin);
+            return command_misused("--%s \"%s\": \"%.*s\" is not a positive time with a unit; "
+                                   "write --%s \"1min, 10min, 1h\"",
+                                   name, text, (int)length, begin, name);
         if (t->count == IMK_DRIFT_ROWS_MAX - 2)
-            return command_misused("--times: at most %d times", IMK_DRIFT_ROWS_MAX - 2);
+            return command_misused("--%s: at most %d times", name, IMK_DRIFT_ROWS_MAX - 2);
         t->at[t->count++] = value;
         begin += length;
         begin += *begin == ',';
@@ -177,16 +171,37 @@ static int choose_duration(const drift_options *o, const drift_scene *s, double 
     return -1;
 }
 
+/* The end of the aids, and the times behind it. */
+static int outage_times(const drift_options *o, const drift_scene *s, drift_stated *rows)
+{
+    static const double usual[] = {10, 60, 300};
+    const double begin = imk_drift_outage(&s->settings), length = motion_length(s);
+    const int code = o->outage ? drift_stated_times("outage", o->outage, rows) : -1;
+    if (code >= 0)
+        return code;
+    for (size_t i = 0; i < sizeof usual / sizeof usual[0] && !o->outage; i++)
+        if (begin + usual[i] <= length)
+            rows->at[rows->count++] = usual[i];
+    for (size_t i = 0; i < rows->count; i++)
+        rows->at[i] += begin;
+    rows->at[rows->count++] = begin;
+    return -1;
+}
+
 static int choose_times(const drift_options *o, drift_scene *s)
 {
-    stated rows = {0};
+    drift_stated rows = {0};
     double duration = 0;
     imk_error error;
-    int code = o->times ? stated_times(o->times, &rows) : choose_duration(o, s, &duration);
+    const bool outage = !o->times && isnan(o->duration) && !isnan(imk_drift_outage(&s->settings));
+    int code = o->times ? drift_stated_times("times", o->times, &rows)
+               : outage ? outage_times(o, s, &rows)
+                        : choose_duration(o, s, &duration);
     if (code >= 0)
         return code;
     if (imk_drift_times_choose(duration, rows.count, rows.at, s->want.asked ? s->want.time : 0,
-                               s->settings.rate, o->plot || o->report || o->output, NULL, &s->times,
+                               s->settings.rate, o->plot || o->report || o->output,
+                               outage ? imk_drift_outage(&s->settings) : 0, NULL, &s->times,
                                &error) != IMK_OK)
         return command_error(&error, NULL);
     const double length = motion_length(s), last = s->times.time[s->times.count - 1];
@@ -216,11 +231,13 @@ int drift_scene_open(const drift_options *o, drift_scene *s)
         return command_misused("--rate %g Hz: expected 0.001 Hz to 1 MHz", settings->rate);
     if (!isnan(o->duration) && o->times)
         return command_misused("--duration and --times exclude each other");
-    int code = o->want ? drift_want_parse(o->want, &s->want) : -1;
+    int code = o->want ? drift_want_parse(o->want, &s->want, &s->want_after) : -1;
     if (code < 0)
         code = read_start(o, settings);
     if (code < 0)
         code = read_gravity(o, settings);
+    if (code < 0)
+        code = drift_aids_open(o, s);
     if (code < 0 && o->motion)
         code = open_motion(o, s);
     if (code < 0)
@@ -230,6 +247,7 @@ int drift_scene_open(const drift_options *o, drift_scene *s)
 
 void drift_scene_free(drift_scene *s)
 {
+    free(s->filter_model);
     imk_motion_file_free(s->motion);
     imk_drift_times_free(&s->times);
 }

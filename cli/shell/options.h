@@ -15,6 +15,7 @@
 typedef enum option_kind {
     OPTION_FLAG,     /* bool: true when given */
     OPTION_TEXT,     /* const char * */
+    OPTION_TEXTS,    /* option_texts: may be given several times */
     OPTION_FILE,     /* const char *: completed as a file name */
     OPTION_INTO,     /* the same, of a file that --output adds to and may replace */
     OPTION_OUTPUT,   /* the same, of a file that is written: see file_clash.h */
@@ -30,6 +31,12 @@ typedef struct option_integer {
     uint64_t value; /* the default otherwise */
     bool given;
 } option_integer;
+
+enum { OPTION_TEXTS_MAX = 8 };
+typedef struct option_texts {
+    size_t count;
+    const char *text[OPTION_TEXTS_MAX];
+} option_texts;
 
 typedef struct option {
     const char *name; /* without the dashes */
@@ -130,7 +137,7 @@ static inline imk_grade options_assumed_class(int choice)
     }
 
 /* OPERANDS_MAX is room for the operands of most verbs; one that takes more makes its own. */
-enum { OPERANDS_MAX = 8, GROUPS_MAX = 4 };
+enum { OPERANDS_MAX = 8, GROUPS_MAX = 5 };
 
 /* One verb of the command. */
 typedef struct verb {

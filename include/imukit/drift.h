@@ -27,13 +27,14 @@
 #ifndef IMUKIT_DRIFT_H
 #define IMUKIT_DRIFT_H
 
+#include "imukit/aiding.h"
 #include "imukit/executor.h"
 #include "imukit/model.h"
 #include "imukit/motion.h"
 
 IMK_BEGIN_C
 
-enum { IMK_DRIFT_STATES = 9, IMK_DRIFT_LANES = 8 };
+enum { IMK_DRIFT_STATES = 9, IMK_DRIFT_AIDED_STATES = 10, IMK_DRIFT_LANES = 8 };
 
 /** A tenth of the Earth's radius [m]: with a larger horizontal error the position is lost, and the
  *  linear theory does not hold. */
@@ -85,6 +86,14 @@ typedef struct imk_drift_settings {
     size_t time_count;
     const double *time; /**< times at which errors are computed, from the start of navigation:
                            increasing, > 0, up to 1e8 [s] */
+    /** Aids of the navigator, up to IMK_AIDS_MAX: their true errors. The navigator then is the
+     *  filter of navigation_filter.h. Their times count from the start of navigation; a reading is
+     *  used at the end of the sample that has ended by then, and zero velocity only where the
+     *  motion stands. While an aid gives a height, the vertical is free. */
+    size_t aid_count;
+    const imk_aid *aid;
+    const imk_aid *filter_aid;     /**< how the filter describes the same aids; NULL: as they are */
+    const imk_model *filter_model; /**< the model that the filter is made for; NULL: the model */
 } imk_drift_settings;
 
 /** At rest at 45 deg north, level, heading north, 100 Hz, slaved vertical, perfect start. */
@@ -97,6 +106,12 @@ IMK_API imk_drift_settings imk_drift_default(void);
  *  _UNSUPPORTED (other than three gyros and three accelerometers along body x, y, z) */
 IMK_API imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *settings,
                                       imk_error *error);
+
+/** The vertical of these settings: free where an aid gives the height, else as they say. */
+IMK_API imk_vertical imk_drift_vertical(const imk_drift_settings *settings);
+/** When the outage of aids begins: the latest end (`until`) of those that end [s]; NaN: none ends.
+ *  Aids without an end, such as an odometer, go on. */
+IMK_API double imk_drift_outage(const imk_drift_settings *settings);
 
 /* ---- covariance ------------------------------------------------------------------------------ */
 
@@ -133,7 +148,10 @@ typedef struct imk_drift_analysis {
     const imk_drift_cross *cross;          /**< cross_count pairs of sources */
     const imk_drift_moments *contribution; /**< [source * time_count + time] */
     const imk_drift_moments *total;        /**< [time] */
-    const double *time;                    /**< [s] */
+    /** [time]: the covariance that the filter of an aided navigator has computed for itself; equal
+     *  to `total` if its description is the truth. NULL: no aids. */
+    const imk_drift_moments *believed;
+    const double *time; /**< [s] */
     /** Effects that the linear theory leaves out, for a warning. Those in Monte Carlo only: dead
      *  bands, ranges that the motion comes near, a resolution coarser than the noise
      *  ("gyro.resolution"), lost samples, and vibration acting on terms that are not linear
@@ -147,7 +165,7 @@ typedef struct imk_drift_analysis {
 IMK_API size_t imk_drift_covariance_size(const imk_model *model,
                                          const imk_drift_settings *settings);
 /** Covariance analysis along the motion. At 2.7 GHz, a day at rest takes some 40 ms and 10 minutes
- *  of a car's drive 60 ms, mostly for the 32 stages of the flicker noise.
+ *  of a car's drive 60 ms, mostly for the 28 stages of the flicker noise.
  *  @param memory    imk_drift_covariance_size() bytes; holds the analysis
  *  @param executor  sources are its work items; NULL: serial. The bits do not depend on it
  *  @return the errors of imk_drift_validate(), IMK_ERROR_WORKSPACE */
@@ -183,6 +201,19 @@ IMK_API size_t imk_drift_runs_workspace_size(const imk_model *model,
 IMK_API imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *settings,
                                   uint64_t seed, uint32_t first, size_t count, double *errors,
                                   void *workspace, size_t workspace_size, imk_error *error);
+
+/** As imk_drift_runs(), for a navigator with aids, whose filter runs in each run; the errors of the
+ *  aids are drawn by IMK_TERM_AID. At 100 Hz with 15 states and readings once a second a run takes
+ *  some 0.1 s for 10 minutes.
+ *  @param errors  [run][time][IMK_DRIFT_AIDED_STATES]: the nine errors, and e^T P^-1 e of them by
+ *                 the filter's own covariance P, without height and climb when they are held; it is
+ *                 chi-square with imk_drift_nees_degrees() if the filter knows the truth
+ *  @return also IMK_ERROR_ARGUMENT (no aids) */
+IMK_API imk_status imk_drift_aided_runs(const imk_model *model, const imk_drift_settings *settings,
+                                        uint64_t seed, uint32_t first, size_t count, double *errors,
+                                        void *workspace, size_t workspace_size, imk_error *error);
+/** Errors that are normalised: 9, or 7 with a vertical that is held. */
+IMK_API int imk_drift_nees_degrees(const imk_drift_settings *settings);
 
 /* ---- figures ----------------------------------------------------------------------------------
  */
@@ -259,6 +290,15 @@ typedef struct imk_drift_allocation {
 IMK_API imk_status imk_drift_require(const imk_drift_analysis *analysis, size_t time,
                                      imk_drift_requirement requirement, double goal,
                                      imk_drift_allocation *allocation, imk_error *error);
+
+/** Make what a source stands for so many times as large: numbers of the model (with `compensated`
+ *  the sigmas of known values), the start in the settings, or an aid. The analysis then finds the
+ *  source so many times as large, with a filter that is made for the new numbers.
+ *  @param source  imk_drift_source.name
+ *  @param aids    those of the settings, to be changed; NULL: none
+ *  @return false: nothing has this name */
+IMK_API bool imk_drift_scale_source(const char *source, double factor, imk_model *model,
+                                    imk_drift_settings *settings, imk_aid *aids);
 
 IMK_END_C
 #endif

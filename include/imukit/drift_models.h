@@ -35,9 +35,10 @@ typedef struct imk_drift_times {
  *  @param rate      sampling rate [Hz]
  *  @param curves    true: add times for curves, evenly in every decade and close enough to show
  *                   Schuler's period of 84 min
+ *  @param origin    from which the curves count [s]: 0, or the end of the aids (imk_drift_outage())
  *  @return IMK_ERROR_MEMORY, IMK_ERROR_RANGE (too many) */
 IMK_API imk_status imk_drift_times_choose(double duration, size_t count, const double *stated,
-                                          double wanted, double rate, bool curves,
+                                          double wanted, double rate, bool curves, double origin,
                                           const imk_allocator *allocator, imk_drift_times *times,
                                           imk_error *error);
 /** Free its arrays. */
@@ -51,6 +52,9 @@ typedef struct imk_drift_wanted {
     double goal;   /**< SI */
     imk_unit unit; /**< unit in which the goal was stated */
     double time;   /**< [s] */
+    /** Of an aided navigator. false: its filter keeps the gains that it has; true: it is made anew
+     *  for terms that are improved. */
+    bool retuned;
 } imk_drift_wanted;
 
 /** Settings of the job. Start from imk_drift_models_default(). */
@@ -138,6 +142,9 @@ typedef struct imk_drift_answer {
     /** Their indices, the term that must improve most first. */
     size_t order[IMK_DRIFT_SOURCES_MAX];
     bool alone; /**< true: improving only one of them can be enough */
+    /** With `retuned`, the figure found with the factors of the allocation: the goal, within 0.2 %,
+     *  or more if it cannot be met. */
+    double reached;
     size_t candidate_count;
     imk_drift_candidate *candidate; /**< the best first */
 } imk_drift_answer;
@@ -156,6 +163,10 @@ typedef struct imk_drift_models {
     uint64_t run_count;
     imk_drift_figures *found, *low, *high; /**< figures and their 95 % intervals */
     size_t *used;                          /**< number of runs used */
+    /** Of an aided navigator: mean over the runs of the errors squared, normalised by the filter's
+     *  own covariance, and its degrees of freedom; 0: none. */
+    int nees_degrees;
+    double *nees;
 } imk_drift_models;
 
 /** Analyse models. The models, their names and the times must outlive the result.
@@ -170,10 +181,13 @@ IMK_API imk_status imk_drift_models_run(size_t count, const imk_model *const *mo
                                         const imk_drift_models_settings *settings,
                                         const imk_job *job, imk_drift_models **result,
                                         imk_error *error);
-/** Add statistics of Monte Carlo runs of the last case at the rows of the table (imk_drift_runs()).
- *  @param errors  [run][row][state], IMK_DRIFT_STATES states
+/** Add statistics of Monte Carlo runs of the last case at the rows of the table (imk_drift_runs(),
+ *  imk_drift_aided_runs()).
+ *  @param degrees  of the normalised errors squared (imk_drift_nees_degrees()); 0: there are none
+ *  @param errors   [run][row][state], IMK_DRIFT_STATES or, with degrees, IMK_DRIFT_AIDED_STATES
+ *                  states
  *  @return IMK_ERROR_MEMORY */
-IMK_API imk_status imk_drift_models_take_runs(imk_drift_models *models, size_t runs,
+IMK_API imk_status imk_drift_models_take_runs(imk_drift_models *models, size_t runs, int degrees,
                                               const double *errors, imk_error *error);
 /** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_drift_models_free(imk_drift_models *result);

@@ -191,6 +191,8 @@ typedef struct imk_drift_shown {
                                 terms are shown; NULL: they are not shown */
     const imk_unstated *assumed; /**< one for each model: what was assumed of it
                                     (imk_model_assume_class()); NULL: nothing was */
+    const char *filter_model; /**< file or name of the model that the filter is made for; NULL: that
+                                 of the unit */
 } imk_drift_shown;
 
 /** Show the growth of errors, budgets, runs, the answer to the requirement, and figures. */

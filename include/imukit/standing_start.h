@@ -3,10 +3,10 @@
  *  What the gyros of a unit read while it stands before navigation: their turn-on biases.
  *
  *  The mean reading r of a unit at rest is the Earth's rate in its axes, w, its bias and noise.
- * With the attitude known but for an error e (drift.h), r - w(estimated) = b - C^T [w x] e + n is a
- *  measurement of the bias. Of a unit that found north by its gyros the component to the east is
- *  zero by construction and says nothing; that to the north and down do. Where the biases hide the
- *  Earth's rotation, the heading is one of a circle, and only how it goes with the biases is known.
+ *  With the attitude known but for an error e (drift.h), r - w(estimated) = b - C^T [w x] e + n
+ *  measures the bias. Of a unit that found north by its gyros the component to the east is zero by
+ *  construction and says nothing; that to the north and down do. Where the biases hide the Earth's
+ *  rotation, the heading is one of a circle, and only how it goes with the biases is known.
  *  Equations: docs/theory/navigation-filter.md. */
 #ifndef IMUKIT_STANDING_START_H
 #define IMUKIT_STANDING_START_H

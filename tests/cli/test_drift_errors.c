@@ -40,7 +40,7 @@ static void displayed_or_against_the_earth(void **state)
     check_contains(out, "Tilt and heading are errors against Earth-fixed axes.", "title");
     assert_int_equal(run("$I drift biased.yaml --latitude 0deg --want 'tilt 0.1 deg @ 84.4min'"),
                      0);
-    check_contains(out, "Wanted: tilt 6.00 arcmin after 84.4 min. Met", "displayed");
+    check_contains(out, "0.00278 deg", "displayed");
     assert_int_equal(
         run("$I drift biased.yaml --latitude 0deg --attitude-errors earth --want 'tilt "
             "0.1 deg @ 84.4min'"),
@@ -60,8 +60,8 @@ static void results_say_which(void **state)
 #define RUNS "$I drift biased.yaml --times 10s -r 10Hz -n 4 "
     assert_int_equal(run(RUNS "-o a.csv && head -1 a.csv"), 0);
     check_contains(out, "displayed_north [rad],displayed_east [rad],displayed_down [rad]", "names");
-    assert_int_equal(
-        run(RUNS "-o a.h5 && " RUNS "--attitude-errors earth -o b.h5 && $I drift a.h5"), 0);
+    assert_int_equal(run(RUNS "-o a.h5 && " RUNS "--attitude-errors earth -o b.h5"), 0);
+    assert_int_equal(run("$I drift a.h5"), 0);
     assert_null(strstr(out, "Earth-fixed"));
     assert_int_equal(run("$I drift b.h5"), 0);
     check_contains(out, "The heading is that against Earth-fixed axes, not the displayed one.",

@@ -105,6 +105,11 @@ imk_status imki_drift_answer(imk_drift_models *r, imki_arena *arena, const imk_e
                                                 &answer->allocation, error);
     if (status != IMK_OK)
         return status;
+    if (want->retuned && one->settings.aid_count > 0) {
+        const imk_status retuned = imki_drift_retune(r, arena, executor, error);
+        if (retuned != IMK_OK)
+            return retuned;
+    }
     order_terms(one->analysis, answer);
     answer->candidate = imki_arena_take(arena, count * sizeof *answer->candidate);
     answer->candidate_count = answer->candidate ? count : 0;

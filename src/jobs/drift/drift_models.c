@@ -246,22 +246,40 @@ imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
     return status;
 }
 
-imk_status imk_drift_models_take_runs(imk_drift_models *r, size_t runs, const double *errors,
-                                      imk_error *error)
+/* Mean of the runs that are numbers. */
+static double mean_square(size_t runs, size_t stride, const double *square)
+{
+    double sum = 0.0;
+    size_t count = 0;
+    for (size_t k = 0; k < runs; k++)
+        if (isfinite(square[k * stride])) {
+            sum += square[k * stride];
+            count++;
+        }
+    return count > 0 ? sum / (double)count : (double)NAN;
+}
+
+imk_status imk_drift_models_take_runs(imk_drift_models *r, size_t runs, int degrees,
+                                      const double *errors, imk_error *error)
 {
     imki_arena *arena = &((holder *)r)->arena;
     const size_t rows = r->times->row_count;
+    const size_t states = degrees > 0 ? IMK_DRIFT_AIDED_STATES : IMK_DRIFT_STATES;
     double *workspace = imki_resize(&arena->allocator, NULL, (runs + 1) * sizeof *workspace);
     r->run_count = runs;
+    r->nees_degrees = degrees;
     r->low = imki_arena_take(arena, rows * sizeof *r->low);
     r->high = imki_arena_take(arena, rows * sizeof *r->high);
     r->used = imki_arena_take(arena, rows * sizeof *r->used);
+    r->nees = imki_arena_take(arena, rows * sizeof *r->nees);
     r->found = imki_arena_take(arena, rows * sizeof *r->found);
-    const bool there = workspace && r->low && r->high && r->used && r->found;
-    for (size_t k = 0; k < rows && there; k++)
-        r->found[k] =
-            imk_drift_figures_of_runs(runs, rows * IMK_DRIFT_STATES, errors + k * IMK_DRIFT_STATES,
-                                      workspace, &r->low[k], &r->high[k], &r->used[k]);
+    const bool there = workspace && r->low && r->high && r->used && r->found && r->nees;
+    for (size_t k = 0; k < rows && there; k++) {
+        const double *row = errors + k * states;
+        r->found[k] = imk_drift_figures_of_runs(runs, rows * states, row, workspace, &r->low[k],
+                                                &r->high[k], &r->used[k]);
+        r->nees[k] = degrees > 0 ? mean_square(runs, rows * states, row + IMK_DRIFT_STATES) : 0.0;
+    }
     imki_resize(&arena->allocator, workspace, 0);
     return there ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
 }

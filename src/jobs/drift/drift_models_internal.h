@@ -42,5 +42,9 @@ imk_status imki_drift_missing(const imk_model *model, const imk_drift_settings *
 /* Fill r->answer. */
 imk_status imki_drift_answer(imk_drift_models *r, imki_arena *arena, const imk_executor *executor,
                              imk_error *error);
+/* The same with a filter that is made anew for what is improved: other factors in the allocation of
+ * the answer, none of which is for a term alone. */
+imk_status imki_drift_retune(imk_drift_models *r, imki_arena *arena, const imk_executor *executor,
+                             imk_error *error);
 
 #endif

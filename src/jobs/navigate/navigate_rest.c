@@ -11,19 +11,10 @@
  * axes is lost then, and the tilt with it, while the mean force asks no gyro. */
 static const double coarse_heading = 0.2;
 
-static imk_vector3 mean_rate(const imk_navigate_log *n)
-{
-    imk_vector3 sum = {{0.0, 0.0, 0.0}};
-    for (size_t row = 0; row < n->first; row++)
-        for (int i = 0; i < 3; i++)
-            sum.v[i] += n->reading[i][row];
-    return imk_vector3_scale(sum, 1.0 / (double)n->first);
-}
-
 /* The mean rate along the vertical found, downwards, and across it. */
 static void parts_of_rate(const imk_navigate_log *n, double *down, double *across)
 {
-    const imk_vector3 rate = mean_rate(n);
+    const imk_vector3 rate = imki_navigate_mean(n, 0, 0, n->first);
     imk_matrix3 c_nb;
     imk_navigation_state_to_ned(&n->alignment.state, NULL, NULL, &c_nb);
     const imk_vector3 turned = imk_matrix3_apply(c_nb, rate);
@@ -82,20 +73,17 @@ void imki_navigate_doubt_heading(imk_navigate_log *n)
     set_heading_sigma(n, sigma < limit ? sigma : limit);
 }
 
-/* 1 sigma of the mean rate of a unit that sways: the difference of its angles at the ends, each as
+/* The difference of its angles at the ends, each as
  * far from the mean as the direction of the force is in seconds, over the time. */
-static double sway_rate(const imk_navigate_log *n)
+double imki_navigate_sway(const imk_navigate_log *n, size_t rows)
 {
     const size_t second = n->record.dt < 1.0 ? imk_samples_in(1.0, n->record.dt) : 1;
-    const size_t seconds = n->first / second;
+    const size_t seconds = rows / second;
     imk_vector3 all = {{0.0, 0.0, 0.0}};
     double squares = 0.0;
     for (int pass = 0; pass < 2; pass++)
         for (size_t k = 0; k < seconds; k++) {
-            imk_vector3 force = {{0.0, 0.0, 0.0}};
-            for (size_t row = k * second; row < (k + 1) * second; row++)
-                for (int i = 0; i < 3; i++)
-                    force.v[i] += n->reading[3 + i][row] / (double)second;
+            const imk_vector3 force = imki_navigate_mean(n, 1, k * second, second);
             if (pass == 0) {
                 all = imk_vector3_add(all, imk_vector3_scale(force, 1.0 / (double)seconds));
                 continue;
@@ -103,7 +91,7 @@ static double sway_rate(const imk_navigate_log *n)
             const imk_vector3 across = imk_vector3_cross(all, force);
             squares += imk_vector3_dot(across, across);
         }
-    const double size = imk_vector3_dot(all, all), time = n->record.dt * (double)n->first;
+    const double size = imk_vector3_dot(all, all), time = n->record.dt * (double)rows;
     return seconds > 0 && size > 0.0 ? sqrt(squares / (double)seconds) / size / time : 0.0;
 }
 
@@ -117,11 +105,11 @@ void imki_navigate_start_biases(imk_navigate_log *n, imk_navigation_filter *filt
 {
     if (!imki_navigate_aligns(n) || !n->settings.model)
         return;
-    const imk_standing_start stood = {.rate = mean_rate(n),
-                                      .time = n->record.dt * (double)n->first,
-                                      .rotation_sigma =
-                                          hypot(n->settings.still_rotation, sway_rate(n)),
-                                      .heading_found = imki_navigate_north(n)};
+    const imk_standing_start stood = {
+        .rate = imki_navigate_mean(n, 0, 0, n->first),
+        .time = n->record.dt * (double)n->first,
+        .rotation_sigma = hypot(n->settings.still_rotation, imki_navigate_sway(n, n->first)),
+        .heading_found = imki_navigate_north(n)};
     imk_navigation_filter_stood(filter, &stood);
 }
 

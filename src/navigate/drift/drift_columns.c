@@ -139,6 +139,8 @@ void imki_drift_column_at(const imki_drift_column *column, const imki_drift_node
     case IMKI_COLUMN_CLOCK: /* the truth goes slower than the samples */
         put_motion(node, raw);
         break;
+    case IMKI_COLUMN_AID:
+        break;
     case IMKI_COLUMN_JITTER: /* F c - dc/dt of what it carries */
         put(node->c_eb, state->angular_acceleration.v, raw);
         put(node->c_eb, node->force_slope.v, raw + 3);

@@ -123,7 +123,7 @@ void imki_drift_cross_at(const imki_drift_plan *plan, const imk_drift_cross *cro
     imki_drift_add_correlated(plan, &plan->part[cross->first], &plan->part[cross->second], node,
                               &p);
     imki_drift_result_axes(node, &t);
-    imki_drift_turn_covariance(&p, &t);
+    imki_drift_turn_covariance(&p.m[0][0], 9, &t);
     memset(moments, 0, sizeof *moments);
     for (int i = 0; i < 9; i++)
         for (int j = 0; j < 9; j++) /* symmetric to the bit */

@@ -9,6 +9,7 @@
  * + floor(t rate + 1e-6), and compared with the truth at the instant when that row truly ended.
  *
  * Counts are divided by the sensitivity. A row that is lost repeats the one before it. */
+#include "drift_aided_internal.h"
 #include "drift_correlation_internal.h"
 #include "drift_runs_internal.h"
 
@@ -64,6 +65,9 @@ typedef struct crew {
     size_t count;
     double correlation[IMKI_CORRELATION_FACTOR]; /* of what calibration left, factored */
     run run[LANES];
+    size_t states;                         /* of a result: the errors, and of a filter more */
+    imki_aided_run *aided;                 /* of each run; NULL: no aids */
+    imk_navigation_filter_settings filter; /* of them */
 } crew;
 
 /* ---- memory ---- */
@@ -106,6 +110,17 @@ static size_t gravity_size(const imk_drift_settings *settings)
     return settings->gravity_deflection > 0.0 ? ROWS * sizeof(imki_gravity_row) : 0;
 }
 
+/* The filters of the runs, and what is needed to describe them. */
+static size_t filters_size(const imk_model *model, const imk_drift_settings *settings)
+{
+    size_t filter;
+    (void)imki_drift_filter_states(model, settings, &filter);
+    return settings->aid_count == 0
+               ? 0
+               : LANES * (imki_aligned(sizeof(imki_aided_run)) + imki_aligned(filter)) +
+                     imki_aligned(imki_drift_filter_scratch());
+}
+
 size_t imk_drift_runs_workspace_size(const imk_model *model, const imk_drift_settings *settings)
 {
     const size_t run_size =
@@ -113,7 +128,7 @@ size_t imk_drift_runs_workspace_size(const imk_model *model, const imk_drift_set
     return imki_aligned(sizeof(crew)) + imki_aligned(sizeof(imk_model)) +
            imki_aligned(piece_count(settings) * sizeof(imk_trajectory_piece)) +
            imki_aligned(3 * ROWS * sizeof(double)) + imki_aligned(gravity_size(settings)) +
-           LANES * run_size + IMKI_ALIGNMENT_SLACK;
+           LANES * run_size + filters_size(model, settings) + IMKI_ALIGNMENT_SLACK;
 }
 
 /* ---- start ---- */
@@ -184,6 +199,17 @@ static imk_status start_run(crew *c, run *r, imki_parts *memory, imk_error *erro
     return IMK_OK;
 }
 
+static imk_status start_filters(crew *c, imki_parts *memory, imk_error *error)
+{
+    size_t size;
+    (void)imki_drift_filter_states(c->model, c->settings, &size);
+    c->aided = imki_take(memory, LANES * sizeof *c->aided);
+    for (size_t i = 0; i < LANES; i++)
+        c->aided[i] = (imki_aided_run){.memory = imki_take(memory, size), .memory_size = size};
+    return imki_drift_filter_settings(c->model, c->settings, &c->motion, &c->filter,
+                                      imki_take(memory, imki_drift_filter_scratch()), error);
+}
+
 static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *error)
 {
     const imk_drift_settings *s = c->settings;
@@ -195,7 +221,7 @@ static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *
     c->time = c->climb + ROWS;
     c->kernel = c->random.kernel;
     c->dt = 1.0 / s->rate;
-    c->slaved = s->vertical == IMK_VERTICAL_SLAVED;
+    c->slaved = imk_drift_vertical(s) == IMK_VERTICAL_SLAVED;
     if (s->alignment == IMK_ALIGNED_SELF) {
         c->alignment_rows = (uint64_t)(s->alignment_time * s->rate + 0.5);
         c->alignment_rows += c->alignment_rows == 0;
@@ -204,6 +230,8 @@ static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *
     if (s->compensated)
         (void)imki_correlation_factor(&c->model->correlation, c->correlation); /* was checked */
     imk_status status = start_motion(c, memory, error);
+    if (status == IMK_OK && s->aid_count > 0)
+        status = start_filters(c, memory, error);
     for (size_t i = 0; i < c->count && status == IMK_OK; i++) {
         c->run[i].number = first + (uint32_t)i;
         status = start_run(c, &c->run[i], memory, error);
@@ -307,6 +335,12 @@ static size_t run_of(const crew *c, size_t lane)
 
 static void start_lanes(crew *c)
 {
+    for (size_t i = 0; i < c->count && c->aided; i++) /* the settings have been checked */
+        if (imki_aided_run_start(&c->aided[i], c->settings, &c->filter, &c->run[i].start, c->random,
+                                 c->run[i].number, NULL) != IMK_OK)
+            c->run[i].gone = true;
+    if (c->aided)
+        return;
     for (size_t i = 0; i < (c->clocks_differ ? c->count : 1); i++)
         for (size_t lane = 0; lane < LANES; lane++) {
             const size_t from = c->clocks_differ ? i : run_of(c, lane);
@@ -316,6 +350,8 @@ static void start_lanes(crew *c)
 
 static imk_navigation_state state_of(const crew *c, size_t i)
 {
+    if (c->aided)
+        return imk_navigation_filter_state(c->aided[i].filter);
     return c->clocks_differ ? imk_strapdown_lanes_state(&c->lanes[i], 0)
                             : imk_strapdown_lanes_state(&c->lanes[0], i);
 }
@@ -341,7 +377,23 @@ static void navigate(crew *c, uint64_t first, size_t from, size_t to)
     const double *height = c->slaved ? c->height : NULL, *climb = c->slaved ? c->climb : NULL;
     if (from >= to)
         return;
-    for (size_t i = 0; i < (c->clocks_differ ? c->count : 1); i++) {
+    for (size_t i = 0; i < c->count && c->aided; i++)
+        if (!c->run[i].gone)
+            imki_aided_run_take(&c->aided[i],
+                                &(imki_aided_rows){.trajectory = c->trajectory,
+                                                   .simulator = c->run[i].simulator,
+                                                   .column = c->run[i].column,
+                                                   .dt = c->dt,
+                                                   .start = c->start,
+                                                   .interval = c->run[i].interval,
+                                                   .moves = c->moves,
+                                                   .height = c->height,
+                                                   .climb = c->climb,
+                                                   .time = c->time,
+                                                   .first = first,
+                                                   .before = c->alignment_rows},
+                                from, to);
+    for (size_t i = 0; i < (c->clocks_differ ? c->count : 1) && !c->aided; i++) {
         for (size_t lane = 0; lane < LANES; lane++)
             for (size_t j = 0; j < CHANNELS; j++)
                 channel[lane][j] = c->run[c->clocks_differ ? i : run_of(c, lane)].column[j] + from;
@@ -350,6 +402,8 @@ static void navigate(crew *c, uint64_t first, size_t from, size_t to)
                                 (const double *const(*)[CHANNELS])channel, height, climb);
     }
     for (size_t i = 0; i < c->count; i++) {
+        if (c->aided && c->run[i].gone)
+            continue;
         const imk_navigation_state state = state_of(c, i);
         const double radius = imk_vector3_norm(state.position);
         c->run[i].gone = c->run[i].gone || !(radius >= LOWEST && radius <= HIGHEST);
@@ -363,7 +417,7 @@ static void look(const crew *c, uint64_t row, size_t stride, double *errors)
         const run *r = &c->run[i];
         double *out = errors + i * stride;
         if (r->gone) {
-            for (size_t j = 0; j < IMK_DRIFT_STATES; j++)
+            for (size_t j = 0; j < c->states; j++)
                 out[j] = (double)NAN;
             continue;
         }
@@ -371,6 +425,8 @@ static void look(const crew *c, uint64_t row, size_t stride, double *errors)
         const imk_navigation_state truth = imki_drift_truth(c->trajectory, time, 0.0);
         const imk_navigation_state state = state_of(c, i);
         imki_drift_errors(&state, &truth, c->settings->attitude_errors, out);
+        if (c->states > IMK_DRIFT_STATES)
+            out[IMK_DRIFT_STATES] = imki_aided_run_nees(&c->aided[i], &truth);
     }
 }
 
@@ -379,7 +435,7 @@ static void look(const crew *c, uint64_t row, size_t stride, double *errors)
 static void compute(crew *c, double *errors)
 {
     const imk_drift_settings *s = c->settings;
-    const size_t stride = s->time_count * IMK_DRIFT_STATES;
+    const size_t stride = s->time_count * c->states;
     const uint64_t begin = c->alignment_rows + 1; /* first row of navigation */
     size_t seen = 0;
     if (c->alignment_rows == 0)
@@ -403,16 +459,16 @@ static void compute(crew *c, double *errors)
                 break;
             navigate(c, first, (size_t)(row - first), (size_t)(last + 1 - first));
             row = last + 1;
-            look(c, last, stride, errors + seen * IMK_DRIFT_STATES);
+            look(c, last, stride, errors + seen * c->states);
         }
         if (seen < s->time_count)
             navigate(c, first, (size_t)(row - first), ROWS);
     }
 }
 
-imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *settings, uint64_t seed,
-                          uint32_t first, size_t count, double *errors, void *workspace,
-                          size_t workspace_size, imk_error *error)
+static imk_status run_all(const imk_model *model, const imk_drift_settings *settings, uint64_t seed,
+                          uint32_t first, size_t count, size_t states, double *errors,
+                          void *workspace, size_t workspace_size, imk_error *error)
 {
     imk_status status = imk_drift_validate(model, settings, error);
     if (status != IMK_OK)
@@ -432,8 +488,27 @@ imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *sett
     c->settings = settings;
     c->random = imk_random_seeded(seed);
     c->count = count;
+    c->states = states;
     status = start(c, first, &rest, error);
     if (status == IMK_OK)
         compute(c, errors);
     return status;
+}
+
+imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *settings, uint64_t seed,
+                          uint32_t first, size_t count, double *errors, void *workspace,
+                          size_t workspace_size, imk_error *error)
+{
+    return run_all(model, settings, seed, first, count, IMK_DRIFT_STATES, errors, workspace,
+                   workspace_size, error);
+}
+
+imk_status imk_drift_aided_runs(const imk_model *model, const imk_drift_settings *settings,
+                                uint64_t seed, uint32_t first, size_t count, double *errors,
+                                void *workspace, size_t workspace_size, imk_error *error)
+{
+    if (settings->aid_count == 0)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "aid_count", "", "at least one aid");
+    return run_all(model, settings, seed, first, count, IMK_DRIFT_AIDED_STATES, errors, workspace,
+                   workspace_size, error);
 }

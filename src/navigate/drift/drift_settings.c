@@ -112,6 +112,31 @@ static imk_status check_numbers(const imk_drift_settings *s, imk_error *error)
     return IMK_OK;
 }
 
+imk_vertical imk_drift_vertical(const imk_drift_settings *settings)
+{
+    for (size_t k = 0; k < settings->aid_count; k++) {
+        const imk_aid *aid = &settings->aid[k];
+        if (aid->kind == IMK_AID_HEIGHT ||
+            (aid->kind == IMK_AID_POSITION && isfinite(aid->sigma[2])))
+            return IMK_VERTICAL_FREE;
+    }
+    return settings->vertical;
+}
+
+int imk_drift_nees_degrees(const imk_drift_settings *settings)
+{
+    return imk_drift_vertical(settings) == IMK_VERTICAL_FREE ? 9 : 7;
+}
+
+double imk_drift_outage(const imk_drift_settings *settings)
+{
+    double last = (double)NAN;
+    for (size_t k = 0; k < settings->aid_count; k++)
+        if (isfinite(settings->aid[k].until) && !(settings->aid[k].until <= last))
+            last = settings->aid[k].until;
+    return last;
+}
+
 imk_status imki_drift_motion(const imk_drift_settings *settings, imki_drift_motion_of *motion,
                              imk_error *error)
 {
@@ -126,6 +151,33 @@ imk_status imki_drift_motion(const imk_drift_settings *settings, imki_drift_moti
     return imk_trajectory_standstill((imk_geodetic){settings->latitude, 0.0, settings->height},
                                      roll_pitch_yaw, true, &motion->piece, &motion->trajectory,
                                      error);
+}
+
+/* Aids are those of the filter too, unless it has another description of the same aids. */
+static imk_status check_aids(const imk_drift_settings *s, imk_error *error)
+{
+    if (s->aid_count > IMK_AIDS_MAX || (s->aid_count > 0 && !s->aid))
+        return refuse(error, "aid_count", (double)s->aid_count, "up to 8 aids");
+    for (size_t k = 0; k < s->aid_count; k++) {
+        const imk_aid *aid = &s->aid[k], *filter = s->filter_aid ? &s->filter_aid[k] : aid;
+        imk_status status = imk_aid_validate(aid, error);
+        if (status == IMK_OK)
+            status = imk_aid_validate(filter, error);
+        if (status != IMK_OK)
+            return status;
+        if (!(aid->interval * s->rate >= 1.0 - 1e-9))
+            return refuse(error, "aid.interval", aid->interval,
+                          "readings of an aid at most once a sample");
+        if (!(aid->from >= 0.0))
+            return refuse(error, "aid.from", aid->from, "a time from the start on");
+        bool same = aid->kind == filter->kind;
+        for (int i = 0; i < 3; i++)
+            same = same && isfinite(aid->sigma[i]) == isfinite(filter->sigma[i]);
+        if (!same)
+            return imk_error_set(error, IMK_ERROR_CONFLICT, "filter_aid", "",
+                                 "the same kinds and axes as in aid");
+    }
+    return IMK_OK;
 }
 
 static imk_status check_motion(const imk_drift_settings *settings, imk_error *error)
@@ -184,6 +236,14 @@ imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *
         status = check_numbers(settings, error);
     if (status == IMK_OK)
         status = check_times(settings, error);
+    if (status == IMK_OK)
+        status = check_aids(settings, error);
+    if (status == IMK_OK && settings->filter_model)
+        status = imk_model_validate(settings->filter_model, error);
+    if (status == IMK_OK && settings->filter_model)
+        status = check_triad(&settings->filter_model->gyro, "filter_model.gyro", error);
+    if (status == IMK_OK && settings->filter_model)
+        status = check_triad(&settings->filter_model->accel, "filter_model.accel", error);
     if (status == IMK_OK)
         status = check_motion(settings, error);
     if (status == IMK_OK && settings->compensated)

@@ -2,6 +2,7 @@
 /* From a model to the sources of error that the linear theory knows: each term on all axes of its
  * sensor one source, each number of it an independent element. Here those of known value, what
  * differs from run to run, the clock and the start; noise in drift_noise_sources.c. */
+#include "drift_aided_internal.h"
 #include "drift_correlation_internal.h"
 
 #include "imukit/distort.h"
@@ -200,10 +201,11 @@ static void add_initial(imki_drift_plan *plan, const imk_drift_settings *setting
 /* ---- all ---------------------------------------------------------------------------------------
  */
 
-size_t imki_drift_drivers_max(const imk_model *model)
+size_t imki_drift_drivers_max(const imk_model *model, const imk_drift_settings *settings)
 {
     const imk_noise *noise[2] = {&model->gyro.noise, &model->accel.noise};
-    size_t count = IMK_FLICKER_STAGES + 7; /* white, constant, walk, ramp, gravity, two warm-ups */
+    /* white, constant, walk, ramp, gravity, two warm-ups */
+    size_t count = 2 * IMK_FLICKER_STAGES + 7 + settings->aid_count;
     for (int t = 0; t < IMKI_NOISE_TERMS; t++)
         for (int i = 0; i < 2 && imki_noise_terms[t]->count; i++)
             count += 3 * (size_t)imki_term_count(imki_noise_terms[t], noise[i]);
@@ -234,4 +236,5 @@ void imki_drift_sources(imki_drift_plan *plan, const imk_model *model,
         imki_drift_omit(plan, "timing.drops");
     imki_drift_gravity_source(plan, settings);
     add_initial(plan, settings, start);
+    imki_drift_aid_sources(plan, settings);
 }

@@ -103,7 +103,7 @@ static void turn_of_vertical(const imki_drift_walk *walk, const imki_drift_node 
 
 static void fill_keep(const imki_drift_walk *walk, imki_drift_node *node, imk_vector3 up)
 {
-    node->slaved = walk->settings->vertical == IMK_VERTICAL_SLAVED;
+    node->slaved = imk_drift_vertical(walk->settings) == IMK_VERTICAL_SLAVED;
     memset(&node->keep, 0, sizeof node->keep);
     for (int i = 0; i < 9; i++)
         node->keep.m[i][i] = 1.0;

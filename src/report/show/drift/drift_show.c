@@ -49,6 +49,16 @@ static void show_runs_data(const imk_drift_models *r, imk_result *result)
         show_figures("figures", &r->found[k], result);
         show_figures("lower", &r->low[k], result);
         show_figures("upper", &r->high[k], result);
+        if (r->nees_degrees > 0) {
+            double low, high;
+            imki_drift_nees_due(r, k, &low, &high);
+            imk_result_object(result, "nees");
+            imk_result_number(result, "mean", r->nees[k]);
+            imk_result_number(result, "degrees", r->nees_degrees);
+            imk_result_number(result, "lower", low);
+            imk_result_number(result, "upper", high);
+            imk_result_end(result);
+        }
         imk_result_end(result);
     }
     imk_result_end(result);
@@ -99,6 +109,11 @@ static void show_case(const imk_drift_models *r, const imk_drift_shown *shown,
         imk_result_quantity(result, "time", times->time[times->row[k]], "s");
         imk_result_text(result, "validity", validity[imk_drift_validity_of(f)]);
         show_figures("figures", f, result);
+        if (one->analysis->believed) {
+            const imk_drift_figures own =
+                imk_drift_figures_of(&one->analysis->believed[times->row[k]]);
+            show_figures("believed", &own, result);
+        }
         imk_result_end(result);
     }
     imk_result_end(result);
@@ -119,7 +134,8 @@ static void show_inputs(const imk_drift_models *r, const imk_drift_shown *shown,
     imki_show_texts(result, "models", r->model_count, r->name);
     imk_result_text(result, "motion", shown->motion);
     imk_result_quantity(result, "rate", s->rate, "Hz");
-    imk_result_text(result, "vertical", s->vertical == IMK_VERTICAL_FREE ? "free" : "slaved");
+    imk_result_text(result, "vertical",
+                    imk_drift_vertical(s) == IMK_VERTICAL_FREE ? "free" : "slaved");
     imk_result_text(result, "aligned", s->alignment == IMK_ALIGNED_SELF ? "self" : "given");
     imk_result_text(result, "attitude_errors",
                     s->attitude_errors == IMK_ATTITUDE_EARTH ? "earth" : "local");
@@ -140,6 +156,7 @@ static void show_inputs(const imk_drift_models *r, const imk_drift_shown *shown,
     }
     if (s->alignment == IMK_ALIGNED_SELF)
         imk_result_quantity(result, "alignment_time", s->alignment_time, "s");
+    imki_drift_show_aids(r, shown->filter_model, result);
     if (r->found)
         imk_result_count(result, "seed", (long long)shown->seed);
     imk_result_end(result);
@@ -171,11 +188,15 @@ static void conditions_of(const imk_drift_models *r, const char *motion, imki_te
     else
         imki_text_add(text, "At rest at %.4g deg %s", fabs(s->latitude) / imk_unit_of("deg").scale,
                       s->latitude < 0 ? "south" : "north");
-    imki_text_add(text, "; attitude %s at the start, height %s.%s",
+    imki_text_put(text, "; ");
+    imki_drift_aids_words(r, text);
+    imki_text_add(text, "%sattitude %s at the start, height %s.%s", s->aid_count > 0 ? "; " : "",
                   s->alignment == IMK_ALIGNED_SELF ? "found by the unit itself"
                   : s->initial_sigma[6] + s->initial_sigma[7] + s->initial_sigma[8] > 0 ? "given"
                                                                                         : "true",
-                  s->vertical == IMK_VERTICAL_FREE ? "free" : "held by other means",
+                  imk_drift_vertical(s) == IMK_VERTICAL_SLAVED ? "held by other means"
+                  : s->vertical == IMK_VERTICAL_FREE           ? "free"
+                                                               : "from the aids",
                   s->attitude_errors == IMK_ATTITUDE_EARTH
                       ? " Tilt and heading are errors against Earth-fixed axes."
                       : "");
@@ -210,10 +231,10 @@ static void show_deciding(const imk_drift_models *r, imk_result *result)
         const imk_drift_case *one = &r->cases[c];
         char text[IMKI_DRIFT_TIME];
         if (one->share_count > 0 && one->share[0].share > 0)
-            imk_result_line(
-                result, "%s: after %s %s contributes %.0f %% of the variance", one->label,
-                imki_drift_time(r->times->time[one->time], IMK_DRIFT_LINEAR, text),
-                one->analysis->source[one->share[0].source].text, 100 * one->share[0].share);
+            imk_result_line(result, "%s: after %s %s contributes %.0f %% of the variance",
+                            one->label, imki_drift_moment(r, r->times->time[one->time], text),
+                            one->analysis->source[one->share[0].source].text,
+                            100 * one->share[0].share);
     }
 }
 
@@ -267,9 +288,10 @@ void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *shown, imk
     if (r->found) {
         imk_result_for(result, IMK_FOR_TERMINAL);
         imk_result_line(result,
-                        "\nMonte Carlo of %s: %llu runs of the whole mechanisation; in brackets "
-                        "95 %% intervals.",
-                        imki_drift_last_case(r)->label, (unsigned long long)r->run_count);
+                        "\nMonte Carlo of %s: %llu runs of the whole %s; in brackets 95 %% "
+                        "intervals.",
+                        imki_drift_last_case(r)->label, (unsigned long long)r->run_count,
+                        r->nees_degrees > 0 ? "filter and its aids" : "mechanisation");
         imk_result_for(result, IMK_FOR_PAGE);
         imk_result_heading(result, "Monte Carlo");
         imk_result_for(result, IMK_FOR_BOTH);

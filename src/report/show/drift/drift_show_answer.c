@@ -22,6 +22,8 @@ void imki_drift_show_answer_data(const imk_drift_models *r, imk_result *result)
     imk_result_quantity(result, "present", need->present, unit);
     imk_result_number(result, "all", need->all);
     imk_result_flag(result, "lower_bound", imki_drift_last_case(r)->missing_count > 0);
+    if (r->settings.drift.aid_count > 0)
+        imk_result_text(result, "gains", want->retuned ? "retuned" : "held");
     imk_result_array(result, "terms");
     for (size_t k = 0; k < a->source_count; k++) {
         imk_result_object(result, NULL);
@@ -76,6 +78,8 @@ static void add_value(const imk_drift_case *one, const imk_result *model, size_t
         add_initial(&one->settings, name, factor, &text);
     else if (strcmp(name, "gravity.deflection") == 0) /* a setting, too */
         imki_text_add(&text, "%.3g ug", one->settings.gravity_deflection * factor / 9.80665e-6);
+    else if (strncmp(name, "aid.", 4) == 0)
+        imki_drift_aid_value(&one->settings, name, factor, &text);
     else
         imki_drift_term_value(model, name, one->settings.compensated, factor, &text);
     imk_table_add(table, "%s", text.size > 0 ? text.bytes : "");
@@ -205,8 +209,10 @@ void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, 
     snprintf(title, sizeof title, "Wanted: %s %s after %s",
              imk_drift_requirement_name(want->figure),
              imk_readable_quantity(want->goal, &want->unit, goal),
-             imki_drift_time(want->time, IMK_DRIFT_LINEAR, time));
-    if (!met)
+             imki_drift_moment(r, want->time, time));
+    if (!met && !(need->all > 0))
+        snprintf(factor, sizeof factor, "no improvement of its terms meets the requirement.");
+    else if (!met)
         snprintf(factor, sizeof factor,
                  "all terms would have to be %.3g times smaller. The smallest improvement that "
                  "meets the requirement:",
@@ -216,6 +222,11 @@ void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, 
     imk_result_for(result, IMK_FOR_TERMINAL);
     imk_result_line(result, "\n" IMK_BOLD "%s." IMK_PLAIN " %s: the figure is %s; %s", title, word,
                     imk_readable_quantity(need->present, &want->unit, now), factor);
+    if (!met && r->settings.drift.aid_count > 0)
+        imk_result_line(result, "%s",
+                        want->retuned ? "The filter is made anew for the improved terms."
+                                      : "The filter keeps its gains; --gains retuned makes it anew "
+                                        "for the improved terms.");
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, title);
     imk_result_finding(

@@ -67,7 +67,7 @@ static const char *first_time(const imk_drift_models *r, const imk_drift_case *o
     const imk_drift_times *times = r->times;
     for (size_t k = 0; k < times->row_count; k++)
         if (imk_drift_validity_of(&one->figures[times->row[k]]) == validity)
-            return imki_drift_time(times->time[times->row[k]], IMK_DRIFT_LINEAR, text);
+            return imki_drift_moment(r, times->time[times->row[k]], text);
     return NULL;
 }
 
@@ -124,7 +124,7 @@ static void warn_of_runs(const imk_drift_models *r, imk_verdict *v)
     warn(v, "disagreement",
          "from %s on the runs differ from the covariance by more than %g %% (%s): the runs are "
          "right, and the linear theory leaves something out",
-         imki_drift_time(imki_drift_row_time(r, row), IMK_DRIFT_LINEAR, text), 100 * tolerance,
+         imki_drift_moment(r, imki_drift_row_time(r, (size_t)row), text), 100 * tolerance,
          imk_drift_requirement_name(requirement));
 }
 
