@@ -8,6 +8,9 @@
  *  truth. An instrument that measures several quantities, such as position and velocity of a GNSS
  *  receiver, is several aids.
  *
+ *  Aids with the same lever arm and the same sigma of it are at one point of the body: the error of
+ *  the lever arm is one for all of them.
+ *
  *  The error of a reading is e = c + w. w is white, from reading to reading. c is a first-order
  *  Gauss-Markov process in continuous time, whether the aid is read or not. */
 #ifndef IMUKIT_AIDING_H

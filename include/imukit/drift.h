@@ -19,8 +19,8 @@
  *  mean. Terms of which only the size is known (repeatability, N, B, K, Gauss-Markov, 1 sigma of
  *  calibrated values) give the covariance. With `compensated`, known values are taken out and their
  *  sigmas remain: those of biases, warm-up, scale factors, nonlinearity, misalignment, cross-axis
- *  response, sensitivities to force, lever arms, ramps, rate error and skew of the clock. The delay
- *  caused by a bandwidth remains.
+ *  response, sensitivities to force, lever arms, ramps, rate error and skew of the clock, with the
+ *  correlations that the model states (imk_correlation). The delay caused by a bandwidth remains.
  *
  *  Power-on, from which random walks, ramps and warm-up count, is the start of the self-alignment,
  *  or of the navigation with a given attitude. */
@@ -93,8 +93,8 @@ IMK_API imk_drift_settings imk_drift_default(void);
 /** Check the settings, and the model with them. @return the errors of imk_model_validate() and
  *  imk_trajectory_validate(), IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _EMPTY (no time),
  *  _TIME_ORDER, _CONFLICT (a motion without the Earth; self-alignment on one that does not begin at
- *  rest, or within 1 deg of a pole), _UNSUPPORTED (other than three gyros and three accelerometers
- *  along body x, y, z) */
+ *  rest, or within 1 deg of a pole; with `compensated`, correlations whose matrix is not positive),
+ *  _UNSUPPORTED (other than three gyros and three accelerometers along body x, y, z) */
 IMK_API imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *settings,
                                       imk_error *error);
 
@@ -115,11 +115,22 @@ typedef struct imk_drift_source {
     const char *text; /**< in words: "gyro bias repeatability" */
 } imk_drift_source;
 
-/** Result of imk_drift_covariance(), in the memory given to it. The moments of the sources add up
- *  to the total, exactly if added in their order. */
+/** What two sources have in common, because the values that they are the uncertainty of were
+ *  calibrated together (imk_correlation): with `compensated` only. */
+typedef struct imk_drift_cross {
+    size_t first, second; /**< sources, first < second */
+    /** [time]: means of 0, and the covariance that both together have beyond the sum of theirs; it
+     *  may be negative. If the sources are multiplied by a and b, it is by a b. */
+    const imk_drift_moments *moments;
+} imk_drift_cross;
+
+/** Result of imk_drift_covariance(), in the memory given to it. The moments of the sources, and
+ *  after them those of the crosses, add up to the total, exactly if added in their order (variances
+ *  that rounding makes negative are 0 in the total). */
 typedef struct imk_drift_analysis {
-    size_t source_count, time_count;
+    size_t source_count, time_count, cross_count;
     const imk_drift_source *source;
+    const imk_drift_cross *cross;          /**< cross_count pairs of sources */
     const imk_drift_moments *contribution; /**< [source * time_count + time] */
     const imk_drift_moments *total;        /**< [time] */
     const double *time;                    /**< [s] */
@@ -136,7 +147,7 @@ typedef struct imk_drift_analysis {
 IMK_API size_t imk_drift_covariance_size(const imk_model *model,
                                          const imk_drift_settings *settings);
 /** Covariance analysis along the motion. At 2.7 GHz, a day at rest takes some 40 ms and 10 minutes
- *  of a car's drive 60 ms, mostly for the 32 stages of the flicker noise.
+ *  of a car's drive 60 ms, mostly for the 28 stages of the flicker noise.
  *  @param memory    imk_drift_covariance_size() bytes; holds the analysis
  *  @param executor  sources are its work items; NULL: serial. The bits do not depend on it
  *  @return the errors of imk_drift_validate(), IMK_ERROR_WORKSPACE */
@@ -153,9 +164,9 @@ IMK_API size_t imk_drift_runs_workspace_size(const imk_model *model,
 /** Runs first … first + count - 1: each simulated as imk_simulator does (the samples are those of
  *  `imukit simulate --run`), aligned, and navigated. The bits of a run depend only on model,
  *  settings, seed and its number. With `compensated`, each run draws the error that calibration
- *  left in every known value (normal, term IMK_TERM_RESIDUAL). Initial errors are drawn by
- *  IMK_TERM_INITIAL, those of height and climb for a free vertical only. docs/theory/monte-carlo.md
- *  has the numbers.
+ *  left in every known value (normal, with the model's correlations, term IMK_TERM_RESIDUAL).
+ *  Initial errors are drawn by IMK_TERM_INITIAL, those of height and climb for a free vertical
+ *  only. docs/theory/monte-carlo.md has the numbers.
  *
  *  Self-alignment takes the first alignment_time * rate rows, rounded; a motion has a standstill of
  *  that length before it. The error at a time is that at the end of the last sample that has ended

@@ -107,6 +107,9 @@ typedef struct imk_drift_case {
     size_t share_count; /**< number of sources with a share or a shift at that time, the largest
                            share first */
     imk_drift_share *share;
+    /** Share that correlations between terms have of the same variance, beyond the terms by
+     *  themselves (imk_drift_cross): it may be negative; 0: there are none. */
+    double correlation_share;
     /** Terms that the model does not state and that would matter at the rows of the table, the
      *  largest share first. If there are any, all figures are lower bounds. */
     size_t missing_count;

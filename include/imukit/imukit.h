@@ -51,6 +51,7 @@
 #include "imukit/names.h"
 #include "imukit/navigate.h"
 #include "imukit/navigation_filter.h"
+#include "imukit/navigation_smoother.h"
 #include "imukit/noise.h"
 #include "imukit/noise_map.h"
 #include "imukit/procedure.h"

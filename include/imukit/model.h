@@ -62,7 +62,8 @@ typedef struct imk_temperature_polynomial {
 
 typedef struct imk_bias {
     imk_axes fixed;         /**< [unit] */
-    imk_axes repeatability; /**< 1 sigma of the random constant of each run [unit] */
+    imk_axes repeatability; /**< 1 sigma of the random constant of each run [unit]: what comes on
+                               top of the noise, whose slow part also differs from run to run */
     imk_temperature_polynomial temperature;
     imk_axes temperature_rate;  /**< [unit/(K/s)] */
     imk_axes warm_up_amplitude; /**< [unit] */
@@ -101,12 +102,14 @@ typedef struct imk_noise {
     imk_density density;
     imk_axes white;            /**< N: angle or velocity random walk [unit/sqrt(Hz)] */
     imk_axes bias_instability; /**< B [unit]; the Allan floor is 0.664 B */
-    imk_axes random_walk;      /**< K: rate or acceleration random walk [unit/sqrt(s)] */
-    imk_axes ramp;             /**< R: rate or acceleration ramp [unit/s] */
-    imk_axes angle_white;      /**< A: white noise of the integrated output [unit s/sqrt(Hz)] */
-    imk_axes reading_noise;    /**< 1 sigma of each reading of the integrated output, whatever the
-                                  rate, such as counts behind a dither have [unit s] */
-    imk_axes quantization;     /**< Q = LSB/sqrt(12) of the integrated output [unit s] */
+    imk_scalar bias_instability_correlation_time; /**< T [s]: B^2/(2 pi f) down to 1/(2 pi T), flat
+                                  below; 0: IMK_FLICKER_TIME of noise.h, 1e6 s */
+    imk_axes random_walk;   /**< K: rate or acceleration random walk [unit/sqrt(s)] */
+    imk_axes ramp;          /**< R: rate or acceleration ramp [unit/s] */
+    imk_axes angle_white;   /**< A: white noise of the integrated output [unit s/sqrt(Hz)] */
+    imk_axes reading_noise; /**< 1 sigma of each reading of the integrated output, whatever the
+                               rate, such as counts behind a dither have [unit s] */
+    imk_axes quantization;  /**< Q = LSB/sqrt(12) of the integrated output [unit s] */
     int gauss_markov_count, sinusoid_count, resonance_count;
     struct imk_gauss_markov_term {
         imk_axes sigma;            /**< [unit] */

@@ -17,9 +17,9 @@ typedef struct imk_join_part {
     const imk_model *model;
     const char *name; /**< in errors: that of its file */
     /** IMK_JOIN_WHOLE: it gives the kinds of sensors that it has, as they are. 0, 1 or 2: it gives
-     *  the axis x, y or z of the kinds that it has. A sensor of one axis, which must be along a
-     * body axis, is turned in cyclic order: what it senses along the next body axis, it does so in
-     * the unit. Of three sensors along x, y and z the one of this axis is taken. */
+     *  the axis x, y or z of the kinds that it has. A sensor of one axis, along a body axis, is
+     *  turned in cyclic order: what it senses along the next body axis, it does so in the unit. Of
+     *  three sensors along x, y and z the one of this axis is taken. */
     int axis;
 } imk_join_part;
 

@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file navigation_filter.h
- *  Navigation with zero-velocity updates: a strapdown mechanisation whose errors are estimated and
- *  corrected whenever something else is known: that the unit stands, or where it is.
+ *  Aided navigation: a strapdown mechanisation whose errors are estimated and corrected by what
+ *  else is known: that the unit stands, where it is, how fast, where it points (aiding.h).
  *
  *  The filter is a closed-loop Kalman filter in Earth-fixed axes. Its states are nine errors of
  *  navigation (position, velocity, attitude) and, per axis of gyro and accelerometer, a bias that
- *  is the sum of parts: a constant that may walk, and first-order Gauss-Markov processes. At a stop
- *  of a few seconds the velocity is known to be zero. As velocity errors grow from tilt, heading
- *  and bias, the update corrects these, too. Without any update the covariance is that of free
- *  navigation.
+ *  is the sum of parts: a constant that may walk, and first-order Gauss-Markov processes; and, for
+ *  aids that have them, correlated errors and errors of lever arms. As velocity errors grow from
+ *  tilt, heading and bias, an update of the velocity or the position corrects these, too. Without
+ *  any update the covariance is that of free navigation.
  *
  *  Every update is tested: if its innovation is too unlikely (chi-square), the update is refused
  *  and counted. Equations: docs/theory/navigation-filter.md. */
 #ifndef IMUKIT_NAVIGATION_FILTER_H
 #define IMUKIT_NAVIGATION_FILTER_H
 
+#include "imukit/aiding.h"
 #include "imukit/alignment.h"
 #include "imukit/model.h"
 #include "imukit/navigate.h"
@@ -63,10 +64,17 @@ typedef struct imk_navigation_filter_settings {
      *  accelerometer x, y, z [s^2/m]. Zeros: no self-alignment. */
     double alignment[3][6];
     double alignment_time;
+    /** Aids; of each the kind, the sigmas and the lever arm are used, while their times are the
+     *  caller's. Aids with the same lever arm and the same sigma of it, above 0, have one error of
+     *  it in common. */
+    size_t aid_count;
+    imk_aid aid[IMK_AIDS_MAX];
+    int recover_after; /**< readings of an aid refused in a row after which the covariance is
+                          enlarged until the next one fits; 0: never */
 } imk_navigation_filter_settings;
 
 /** Perfect sensors, free vertical, three samples, steps of 0.5 s, velocity sigma 10 mm/s, rotation
- *  not used, false alarm 1e-4. */
+ *  not used, false alarm 1e-4, no aids, recovery after 30 refusals. */
 IMK_API void imk_navigation_filter_default(imk_navigation_filter_settings *settings);
 
 /** Fill gyro and accel from a model with three axes of each.
@@ -109,16 +117,23 @@ typedef struct imk_navigation_filter_estimate {
     imk_vector3 gyro_bias_sigma, accel_bias_sigma; /**< 1 sigma of these biases */
 } imk_navigation_filter_estimate;
 
-/** Counts of updates. */
+/** Counts of updates of one kind: of stands, or of one aid. */
 typedef struct imk_navigation_filter_counts {
     uint64_t accepted, refused;
     uint64_t refused_in_row; /**< latest updates refused without a break; if this keeps growing, the
                                 filter has diverged */
     double first_refused;    /**< time of the first one refused [s]; NaN: none */
-    uint64_t degrees;        /**< degrees of freedom of all tested updates together */
+    uint64_t recovered; /**< of those accepted, how many only after the covariance was enlarged */
+    double first_recovered; /**< time of the first of these [s]; NaN: none */
+    uint64_t degrees;       /**< degrees of freedom of the accepted updates together */
     double chi_square; /**< sum of their squared normalised innovations; near `degrees` if the model
                           describes the unit */
+    uint64_t pairs;    /**< degrees of freedom of accepted updates whose predecessor has as many */
+    double pair_sum;   /**< sum of the products of normalised innovations with those before */
 } imk_navigation_filter_counts;
+/** Correlation of the innovations with those before: 0 within 1/sqrt(pairs) if all is as described;
+ *  more if errors of the aid are correlated in time and not described so. NaN without pairs. */
+IMK_API double imk_navigation_filter_correlation(const imk_navigation_filter_counts *counts);
 
 /** A filter in progress: opaque memory of imk_navigation_filter_size() bytes, given by the caller.
  */
@@ -144,12 +159,41 @@ IMK_API bool imk_navigation_filter_stand(imk_navigation_filter *filter);
 /** State that the unit has moved until now: rotation before this moment does not count for the next
  *  update. */
 IMK_API void imk_navigation_filter_moved(imk_navigation_filter *filter);
-/** Update with a known place, on the axes whose sigma is finite, such as the height of a barometer
- *  only.
- *  @param sigma  1 sigma north, east, down [m], > 0; infinity: not known
- *  @return false: the update was refused */
-IMK_API bool imk_navigation_filter_fix(imk_navigation_filter *filter, imk_geodetic place,
-                                       imk_vector3 sigma);
+/** A reading of an aid. */
+typedef struct imk_aid_reading {
+    double time;     /**< [s], on the clock of imk_navigation_state.time, within the last sample */
+    double value[3]; /**< position: latitude, longitude [rad], height [m]; velocity: north, east,
+                        down [m/s]; heading [rad]; height [m]; odometer: along body x, y, z [m/s];
+                        zero velocity: 0 */
+    double sigma[3]; /**< 1 sigma of w of this reading (aiding.h), on the axes of the kind; 0: that
+                        of the aid; infinity: not measured */
+    bool compare;    /**< only compare: the innovation is that, and nothing changes */
+} imk_aid_reading;
+
+typedef enum imk_aid_verdict {
+    IMK_AID_USED = 0,
+    IMK_AID_RECOVERED, /**< used, after the covariance was enlarged */
+    IMK_AID_REFUSED,   /**< its innovation is too unlikely */
+    IMK_AID_NOT_USED   /**< out of the last sample; no axis is measured; not finite; a heading while
+                          body x is vertical or at a pole */
+} imk_aid_verdict;
+
+/** Update with a reading of aid number `aid` of the settings. The state at its time is
+ *  interpolated within the last sample. */
+IMK_API imk_aid_verdict imk_navigation_filter_aid(imk_navigation_filter *filter, size_t aid,
+                                                  const imk_aid_reading *reading);
+
+/** The innovation of the last update tried: prediction minus reading. */
+typedef struct imk_innovation {
+    size_t rows;
+    int axis[3];     /**< of each row */
+    double value[3]; /**< [unit of the aid; stands: m/s or rad/s] */
+    double sigma[3]; /**< 1 sigma predicted */
+    double chi_square;
+    bool accepted;
+} imk_innovation;
+/** That of the last update tried; no rows before the first. */
+IMK_API imk_innovation imk_navigation_filter_innovation(const imk_navigation_filter *filter);
 
 /** The estimate at the end of the last sample. */
 IMK_API void imk_navigation_filter_get(imk_navigation_filter *filter,
@@ -158,9 +202,12 @@ IMK_API void imk_navigation_filter_get(imk_navigation_filter *filter,
 IMK_API imk_navigation_state imk_navigation_filter_state(const imk_navigation_filter *filter);
 /** These readings at present, from the estimated attitude and biases. */
 IMK_API imk_rest_readings imk_navigation_filter_rest(const imk_navigation_filter *filter);
-/** Counts of updates up to now. */
+/** Counts of the updates at stands up to now. */
 IMK_API imk_navigation_filter_counts
 imk_navigation_filter_counted(const imk_navigation_filter *filter);
+/** The same of aid number `aid` of the settings. */
+IMK_API imk_navigation_filter_counts
+imk_navigation_filter_aided(const imk_navigation_filter *filter, size_t aid);
 
 IMK_END_C
 #endif

@@ -98,6 +98,9 @@ static bool find_budget(const imk_drift_models *r, imk_drift_case *one, imki_are
         s.random = imk_drift_figures_of(&m);
         one->share[one->share_count++] = s;
     }
+    for (size_t k = 0; k < a->cross_count && total > 0; k++)
+        one->correlation_share +=
+            imki_drift_variance(&a->cross[k].moments[one->time], requirement) / total;
     qsort(one->share, one->share_count, sizeof *one->share, by_share);
     return true;
 }

@@ -4,6 +4,7 @@
 #define IMUKI_NAVIGATE_LOG_INTERNAL_H
 
 #include "imukit/navigate_log.h"
+#include "imukit/navigation_smoother.h"
 
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
@@ -57,6 +58,18 @@ void imki_navigate_free_biases(const imk_navigate_log *n, imk_navigation_filter_
 void imki_navigate_start_biases(imk_navigate_log *n, imk_navigation_filter *filter);
 /* Through the record, into the track, which is the allocator's of the record. */
 imk_status imki_navigate_follow(imk_navigate_log *n, const imk_job *job, imki_arena *scratch,
+                                imk_error *error);
+
+/* The columns of a row of the track but for time and acceleration; notes the largest distance. */
+void imki_navigate_track_row(imk_navigate_log *n, const imk_navigation_filter_estimate *estimate,
+                             double row[IMK_TRACK_COLUMNS]);
+
+/* Smoothing: begin to record, record a row of the track (a smoother of NULL does nothing), and put
+ * the smoothed rows into the track. */
+imk_status imki_navigate_record(imk_navigation_filter *filter, imki_arena *scratch,
+                                imk_navigation_smoother **smoother, imk_error *error);
+imk_status imki_navigate_mark(imk_navigation_smoother *smoother, imk_error *error);
+imk_status imki_navigate_smooth(imk_navigate_log *n, imk_navigation_smoother *smoother,
                                 imk_error *error);
 
 #endif

@@ -8,7 +8,6 @@
 #include "model/model_internal.h"
 #include "model/model_schema_internal.h"
 
-#include <stdio.h>
 #include <string.h>
 
 static const uint32_t settings_cookie = 0x494D4B1Au;
@@ -34,9 +33,11 @@ void imki_join_tell(imk_joined *joined, imk_join_note_kind kind, int sensor, int
 imk_status imki_join_conflict(const imki_join *join, const char *field, int a, int b,
                               const char *more, imk_error *error)
 {
-    char found[200];
-    snprintf(found, sizeof found, "both %.80s and %.80s give it", join->part[a].name,
-             join->part[b].name);
+    char found[200] = "both ";
+    imki_append_text(found, 90, join->part[a].name);
+    imki_append_text(found, 95, " and ");
+    imki_append_text(found, 180, join->part[b].name);
+    imki_append_text(found, sizeof found, " give it");
     return imk_error_set(error, IMK_ERROR_CONFLICT, field, found, more);
 }
 
@@ -100,8 +101,8 @@ static imk_status choose(const imki_join *join, int sensor, int chosen, imk_erro
     }
     for (int k = 0; k < 3 && status == IMK_OK && given > 0; k++)
         if (from[k] < 0) {
-            char expected[80];
-            snprintf(expected, sizeof expected, "a part that gives axis %s", axes[k]);
+            char expected[80] = "a part that gives axis ";
+            imki_append_text(expected, sizeof expected, axes[k]);
             status = imk_error_set(error, IMK_ERROR_KEY_MISSING, imki_kind_names[sensor],
                                    join->part[last].name, expected);
         }

@@ -3,14 +3,12 @@
  * triad has once (time of a warm-up, reference of a polynomial) has to agree. */
 #include "model_join_internal.h"
 
-#include "base/refuse_internal.h"
 #include "base/text_internal.h"
 #include "model/model_internal.h"
 #include "model/model_schema_internal.h"
 
 #include "imukit/model_unstated.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* The sensor that an axis comes from. */

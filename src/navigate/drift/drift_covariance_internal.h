@@ -115,6 +115,7 @@ typedef struct imki_drift_element {
     double x[9];     /* what it has done, when not noise */
     double covariance[2][2]; /* of the driver's states, when noise */
     double cross[2][9];      /* of these with x */
+    int correlated;          /* place in the model's correlation, from 1; 0: independent */
 } imki_drift_element;
 
 typedef struct imki_drift_part {
@@ -130,6 +131,7 @@ typedef struct imki_drift_plan {
     imki_drift_element *element;
     imki_drift_column *column;
     imki_drift_driver *driver;
+    const imk_correlation *correlation; /* of calibrated values; NULL: they are independent */
     size_t omitted_count;
     const char **omitted;
 } imki_drift_plan;
@@ -245,6 +247,11 @@ void imki_drift_begin(const imki_drift_plan *plan, imki_drift_part *part,
 /* Move a source over a step, repeat times. @param over  [driver][slot] */
 void imki_drift_propagate(const imki_drift_plan *plan, imki_drift_part *part,
                           const imki_drift_step *step, imki_driver_step (*over)[IMKI_DRIFT_SLOTS]);
+/* x of an element that is not noise, with what it carries. */
+void imki_drift_element_at(const imki_drift_plan *plan, const imki_drift_element *element,
+                           const imki_drift_node *node, double x[9]);
+/* p <- t p t^T */
+void imki_drift_turn_covariance(imki_matrix9 *p, const imki_matrix9 *t);
 /* Mean and covariance of a source at an instant, in north-east-down axes. */
 void imki_drift_moments_at(const imki_drift_plan *plan, const imki_drift_part *part,
                            const imki_drift_node *node, imk_drift_moments *moments);

@@ -8,7 +8,7 @@
  *
  * P being the covariance of x, S that of x with the driver's states z, and Z that of these. A
  * source adds up its elements, which are independent: one P for all, an S and Z for each. */
-#include "drift_covariance_internal.h"
+#include "drift_correlation_internal.h"
 
 #include "imukit/distort.h"
 
@@ -40,7 +40,7 @@ static void move_constant(imki_drift_element *element, const imki_drift_step *st
 
 /* ---- noise ---- */
 
-static void move_covariance(imki_matrix9 *p, const imki_matrix9 *phi)
+void imki_drift_turn_covariance(imki_matrix9 *p, const imki_matrix9 *phi)
 {
     imki_matrix9 half = {{{0.0}}}, turned, whole = {{{0.0}}};
     for (int i = 0; i < 9; i++)
@@ -162,7 +162,7 @@ void imki_drift_propagate(const imki_drift_plan *plan, imki_drift_part *part,
     const bool noisy = part->count > 0 && is_noise(&plan->element[part->first]);
     for (size_t repeat = 0; repeat < step->repeat; repeat++) {
         if (noisy)
-            move_covariance(&part->covariance, &step->phi);
+            imki_drift_turn_covariance(&part->covariance, &step->phi);
         move_elements(plan, part, step, over);
     }
 }
@@ -229,6 +229,14 @@ void imki_drift_begin(const imki_drift_plan *plan, imki_drift_part *part,
 
 /* ---- results ---- */
 
+void imki_drift_element_at(const imki_drift_plan *plan, const imki_drift_element *element,
+                           const imki_drift_node *node, double x[9])
+{
+    imki_drift_carried_at(&plan->column[element->column], node, x);
+    for (int j = 0; j < 9; j++)
+        x[j] = element->x[j] + x[j] * element->state[0]; /* of rounding there is no x */
+}
+
 void imki_drift_moments_at(const imki_drift_plan *plan, const imki_drift_part *part,
                            const imki_drift_node *node, imk_drift_moments *moments)
 {
@@ -238,17 +246,16 @@ void imki_drift_moments_at(const imki_drift_plan *plan, const imki_drift_part *p
         const imki_drift_element *element = &plan->element[i];
         if (element->use == IMKI_ELEMENT_NOISE)
             continue;
-        imki_drift_carried_at(&plan->column[element->column], node, c);
-        for (int j = 0; j < 9; j++)
-            c[j] = element->x[j] + c[j] * element->state[0]; /* of rounding there is no x */
+        imki_drift_element_at(plan, element, node, c);
         if (element->use == IMKI_ELEMENT_MEAN)
             for (int j = 0; j < 9; j++)
                 mean[j] += c[j];
         else
             add_square(&p, 1.0, c);
     }
+    imki_drift_add_correlated(plan, part, part, node, &p);
     imki_drift_result_axes(node, &t);
-    move_covariance(&p, &t);
+    imki_drift_turn_covariance(&p, &t);
     for (int i = 0; i < 9; i++) {
         moments->mean[i] = 0.0;
         for (int j = 0; j < 9; j++)

@@ -9,6 +9,7 @@
  * + floor(t rate + 1e-6), and compared with the truth at the instant when that row truly ended.
  *
  * Counts are divided by the sensitivity. A row that is lost repeats the one before it. */
+#include "drift_correlation_internal.h"
 #include "drift_runs_internal.h"
 
 #include "base/workspace_internal.h"
@@ -61,6 +62,7 @@ typedef struct crew {
     double *height, *climb, *time; /* ROWS each */
     imki_gravity_row *gravity;     /* ROWS; NULL: gravity is normal */
     size_t count;
+    double correlation[IMKI_CORRELATION_FACTOR]; /* of what calibration left, factored */
     run run[LANES];
 } crew;
 
@@ -162,7 +164,7 @@ static imk_status start_run(crew *c, run *r, imki_parts *memory, imk_error *erro
         r->column[i] = columns + i * ROWS;
     if (s->compensated) {
         *c->drawn = *c->model;
-        imki_drift_residual(c->drawn, c->random, r->number);
+        imki_drift_residual(c->drawn, c->correlation, c->random, r->number);
         model = c->drawn;
     }
     r->interval = c->dt / (1.0 + model->timing.rate_error.value);
@@ -199,6 +201,8 @@ static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *
         c->alignment_rows += c->alignment_rows == 0;
     }
     c->last_row = c->alignment_rows + row_of(s->time[s->time_count - 1], s->rate);
+    if (s->compensated)
+        (void)imki_correlation_factor(&c->model->correlation, c->correlation); /* was checked */
     imk_status status = start_motion(c, memory, error);
     for (size_t i = 0; i < c->count && status == IMK_OK; i++) {
         c->run[i].number = first + (uint32_t)i;

@@ -10,8 +10,9 @@
 /* ---- drift_residual.c ---- */
 
 /* Put in place of every known value of the model what calibration left of it in this run: its sigma
- * times a normal. What needs a temperature profile becomes zero. */
-void imki_drift_residual(imk_model *model, imk_random random, uint32_t run);
+ * times a normal. What needs a temperature profile becomes zero.
+ * @param factor  of the model's correlations (imki_correlation_factor()); NULL where it has none */
+void imki_drift_residual(imk_model *model, const double *factor, imk_random random, uint32_t run);
 
 /* ---- drift_gravity.c ---- */
 

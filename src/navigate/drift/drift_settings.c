@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What is navigated and when to look: defaults and checks, for the covariance and for the runs. */
+#include "drift_correlation_internal.h"
 #include "drift_settings_internal.h"
 
 #include "base/refuse_internal.h"
@@ -156,6 +157,17 @@ static imk_status check_motion(const imk_drift_settings *settings, imk_error *er
     return IMK_OK;
 }
 
+static imk_status check_correlation(const imk_correlation *correlation, imk_error *error)
+{
+    double factor[IMKI_CORRELATION_FACTOR];
+    return imki_correlation_factor(correlation, factor)
+               ? IMK_OK
+               : imk_error_set(error, IMK_ERROR_CONFLICT, "correlation.values",
+                               "numbers that no quantities have as correlations: their matrix is "
+                               "not positive",
+                               "the correlations of one estimate, or none");
+}
+
 imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *settings,
                               imk_error *error)
 {
@@ -174,5 +186,7 @@ imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *
         status = check_times(settings, error);
     if (status == IMK_OK)
         status = check_motion(settings, error);
+    if (status == IMK_OK && settings->compensated)
+        status = check_correlation(&model->correlation, error);
     return status;
 }

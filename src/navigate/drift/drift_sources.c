@@ -2,7 +2,7 @@
 /* From a model to the sources of error that the linear theory knows: each term on all axes of its
  * sensor one source, each number of it an independent element. Here those of known value, what
  * differs from run to run, the clock and the start; noise in drift_noise_sources.c. */
-#include "drift_covariance_internal.h"
+#include "drift_correlation_internal.h"
 
 #include "imukit/distort.h"
 #include "imukit/navigate.h"
@@ -75,6 +75,12 @@ static void add_known(imki_drift_plan *plan, const known_term *known, const imk_
             const imki_drift_column column = known_column(known, triad, axis, j);
             imki_drift_add_constant(plan, compensated ? IMKI_ELEMENT_SIZE : IMKI_ELEMENT_MEAN,
                                     &column, &driver, ramp ? 0.0 : x, ramp ? x : 0.0);
+            if (plan->element && compensated)
+                plan->element[plan->element_count - 1].correlated =
+                    1 + imki_correlation_index(plan->correlation,
+                                               (imk_model_parameter){(uint8_t)known->sensor,
+                                                                     (uint8_t)known->term,
+                                                                     (uint8_t)axis, (uint8_t)j});
         }
 }
 
@@ -197,7 +203,8 @@ static void add_initial(imki_drift_plan *plan, const imk_drift_settings *setting
 size_t imki_drift_drivers_max(const imk_model *model)
 {
     const imk_noise *noise[2] = {&model->gyro.noise, &model->accel.noise};
-    size_t count = IMK_FLICKER_STAGES + 7; /* white, constant, walk, ramp, gravity, two warm-ups */
+    /* white, constant, walk, ramp, gravity, two warm-ups */
+    size_t count = 2 * IMK_FLICKER_STAGES + 7;
     for (int t = 0; t < IMKI_NOISE_TERMS; t++)
         for (int i = 0; i < 2 && imki_noise_terms[t]->count; i++)
             count += 3 * (size_t)imki_term_count(imki_noise_terms[t], noise[i]);
@@ -215,6 +222,8 @@ static void add_triad(imki_drift_plan *plan, const imk_triad *triad, int sensor,
 void imki_drift_sources(imki_drift_plan *plan, const imk_model *model,
                         const imk_drift_settings *settings, imk_geodetic start)
 {
+    plan->correlation =
+        settings->compensated && model->correlation.count > 1 ? &model->correlation : NULL;
     add_triad(plan, &model->gyro, IMK_GYRO, settings);
     add_triad(plan, &model->accel, IMK_ACCEL, settings);
     if (settings->motion) {

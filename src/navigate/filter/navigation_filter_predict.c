@@ -18,6 +18,7 @@
  * steps of a second. The integral of the gyros' noise
  * since a stand began, s, has with the errors the covariance J <- Phi J + Gamma N^2. */
 #include "navigation_filter_internal.h"
+#include "navigation_smoother_internal.h"
 
 #include "imukit/earth.h"
 #include "imukit/elementary.h"
@@ -74,10 +75,9 @@ static void error_matrix(const imk_navigation_filter *f, imk_vector3 force, squa
     set_cross(m, 6, 6, earth, -1.0);
 }
 
-/* The step: phi (9 x 9), gamma (9 x 3) of gyro and accelerometer biases, and the white noise. */
+/* The step, and the white noise. */
 typedef struct step_matrices {
-    square phi;
-    double gamma[2][ERRORS][3];
+    imki_filter_step by;
     square noise;
 } step_matrices;
 
@@ -96,43 +96,64 @@ static void add_noise(square m, square m2, const double b[ERRORS], double s, dou
             noise[i][j] += weight * a[i] * a[j];
 }
 
-static void make_step(const imk_navigation_filter *f, double h, const imk_matrix3 *c,
-                      imk_vector3 force, step_matrices *step)
+/* What a bias, or a unit of noise, on one axis does to the derivative of the errors. */
+static void bias_column(const imk_matrix3 *c, int sensor, int axis, double b[ERRORS])
 {
-    const imk_triad_errors *triad[2] = {&f->settings.gyro, &f->settings.accel};
-    square m, m2, m3, integral;
-    error_matrix(f, force, m);
-    multiply(m, m, m2);
+    memset(b, 0, ERRORS * sizeof *b);
+    for (int k = 0; k < 3; k++)
+        b[(sensor == IMKI_GYRO_PART ? 6 : 3) + k] = c->m[k][axis];
+}
+
+/* phi and gamma of a step; m is the matrix of the errors, m2 its square. */
+static void make_shift(double h, const imk_matrix3 *c, square m, square m2, imki_filter_step *by)
+{
+    square m3, integral;
     multiply(m2, m, m3);
     for (int i = 0; i < ERRORS; i++)
         for (int j = 0; j < ERRORS; j++) {
             const double one = i == j ? 1.0 : 0.0;
-            step->phi[i][j] = one + h * (m[i][j] + 0.5 * h * (m2[i][j] + h / 3.0 * m3[i][j]));
+            by->phi[i][j] = one + h * (m[i][j] + 0.5 * h * (m2[i][j] + h / 3.0 * m3[i][j]));
             integral[i][j] = h * (one + 0.5 * h * (m[i][j] + h / 3.0 * m2[i][j]));
-            step->noise[i][j] = 0.0;
         }
     for (int sensor = 0; sensor < 2; sensor++)
         for (int axis = 0; axis < 3; axis++) {
-            const int rows = sensor == IMKI_GYRO_PART ? 6 : 3;
-            const double n = triad[sensor]->white[axis], power = n * n * h;
-            double b[ERRORS] = {0};
-            for (int k = 0; k < 3; k++)
-                b[rows + k] = c->m[k][axis];
+            double b[ERRORS];
+            bias_column(c, sensor, axis, b);
             for (int i = 0; i < ERRORS; i++) {
-                step->gamma[sensor][i][axis] = 0.0;
+                by->gamma[sensor][i][axis] = 0.0;
                 for (int k = 0; k < ERRORS; k++)
-                    step->gamma[sensor][i][axis] += integral[i][k] * b[k];
+                    by->gamma[sensor][i][axis] += integral[i][k] * b[k];
             }
+        }
+}
+
+void imki_navigation_filter_shift(const imk_navigation_filter *f, double h, imki_filter_step *step)
+{
+    square m, m2;
+    error_matrix(f, f->last.force, m);
+    multiply(m, m, m2);
+    make_shift(h, &f->attitude, m, m2, step);
+}
+
+static void make_step(const imk_navigation_filter *f, double h, const imk_matrix3 *c,
+                      imk_vector3 force, step_matrices *step)
+{
+    const imk_triad_errors *triad[2] = {&f->settings.gyro, &f->settings.accel};
+    square m, m2;
+    error_matrix(f, force, m);
+    multiply(m, m, m2);
+    make_shift(h, c, m, m2, &step->by);
+    memset(step->noise, 0, sizeof step->noise);
+    for (int sensor = 0; sensor < 2; sensor++)
+        for (int axis = 0; axis < 3; axis++) {
+            const double n = triad[sensor]->white[axis], power = n * n * h;
+            double b[ERRORS];
+            bias_column(c, sensor, axis, b);
             add_noise(m, m2, b, 0.0, power / 6.0, step->noise);
             add_noise(m, m2, b, 0.5 * h, power * 2.0 / 3.0, step->noise);
             add_noise(m, m2, b, h, power / 6.0, step->noise);
         }
 }
-
-/* Of each part over a step: what remains of it, and what noise is added. */
-typedef struct part_step {
-    double decay, noise[3];
-} part_step;
 
 double imki_bias_part_decay(const imk_bias_part *part, double h)
 {
@@ -140,43 +161,67 @@ double imki_bias_part_decay(const imk_bias_part *part, double h)
     return t > 0.0 ? 1.0 + imk_expm1(-h / t) : 1.0;
 }
 
-static part_step make_part(const imk_bias_part *part, double h)
+/* Of each state behind the nine over a step: what remains of it, and what noise is added. */
+typedef struct rest_step {
+    double decay[IMKI_FILTER_STATES_MAX], noise[IMKI_FILTER_STATES_MAX];
+} rest_step;
+
+static double lost_variance(double correlation_time, double h)
 {
-    part_step step = {.decay = imki_bias_part_decay(part, h)};
-    const double t = part->correlation_time;
-    if (t > 0.0) {
-        const double lost = -imk_expm1(-h / t);
-        for (int i = 0; i < 3; i++)
-            step.noise[i] = part->sigma[i] * part->sigma[i] * lost * (2.0 - lost);
-    } else {
-        for (int i = 0; i < 3; i++)
-            step.noise[i] = part->walk[i] * part->walk[i] * h;
+    const double lost = -imk_expm1(-h / correlation_time);
+    return lost * (2.0 - lost);
+}
+
+static void make_rest(const imk_navigation_filter *f, double h, rest_step *rest)
+{
+    const imk_triad_errors *triad[2] = {&f->settings.gyro, &f->settings.accel};
+    size_t k = 0;
+    for (int sensor = 0; sensor < 2; sensor++)
+        for (size_t p = 0; p < f->parts[sensor]; p++) {
+            const imk_bias_part *part = &triad[sensor]->part[p];
+            const double t = part->correlation_time, decay = imki_bias_part_decay(part, h);
+            const double lost = t > 0.0 ? lost_variance(t, h) : 0.0;
+            for (int i = 0; i < 3; i++, k++) {
+                rest->decay[k] = decay;
+                rest->noise[k] = t > 0.0 ? part->sigma[i] * part->sigma[i] * lost
+                                         : part->walk[i] * part->walk[i] * h;
+            }
+        }
+    for (size_t a = 0; a < f->aid_states; a++, k++) {
+        const imki_aid_state *state = &f->aid_state[a];
+        const double t = state->correlation_time;
+        rest->decay[k] = t > 0.0 ? 1.0 + imk_expm1(-h / t) : 1.0;
+        rest->noise[k] = t > 0.0 ? state->sigma * state->sigma * lost_variance(t, h) : 0.0;
     }
-    return step;
+}
+
+/* The state of part p of a sensor's bias on an axis. */
+static size_t part_state(const imk_navigation_filter *f, int sensor, size_t p, size_t axis)
+{
+    return ERRORS + 3 * ((sensor == IMKI_GYRO_PART ? 0 : f->parts[IMKI_GYRO_PART]) + p) + axis;
 }
 
 /* One vector of all errors by the step: `stride` apart, in place. */
-static void advance(const imk_navigation_filter *f, const step_matrices *step,
-                    const part_step *parts, double *x, size_t stride)
+static void advance(const imk_navigation_filter *f, const imki_filter_step *step,
+                    const double *decay, double *x, size_t stride)
 {
     double now[ERRORS], bias[2][3] = {{0}};
-    for (int i = 0; i < ERRORS; i++)
-        now[i] = x[(size_t)i * stride];
-    double *at = x + ERRORS * stride;
+    for (size_t i = 0; i < ERRORS; i++)
+        now[i] = x[i * stride];
     for (int sensor = 0; sensor < 2; sensor++)
-        for (size_t p = 0; p < f->parts[sensor]; p++, parts++)
-            for (int axis = 0; axis < 3; axis++, at += stride) {
-                bias[sensor][axis] += *at;
-                *at *= parts->decay;
-            }
-    for (int i = 0; i < ERRORS; i++) {
+        for (size_t p = 0; p < f->parts[sensor]; p++)
+            for (size_t axis = 0; axis < 3; axis++)
+                bias[sensor][axis] += x[part_state(f, sensor, p, axis) * stride];
+    for (size_t i = ERRORS; i < f->states; i++)
+        x[i * stride] *= decay[i - ERRORS];
+    for (size_t i = 0; i < ERRORS; i++) {
         double sum = 0.0;
         for (int k = 0; k < ERRORS; k++)
             sum += step->phi[i][k] * now[k];
         for (int sensor = 0; sensor < 2; sensor++)
             for (int axis = 0; axis < 3; axis++)
                 sum += step->gamma[sensor][i][axis] * bias[sensor][axis];
-        x[(size_t)i * stride] = sum;
+        x[i * stride] = sum;
     }
 }
 
@@ -192,37 +237,110 @@ static void hold_vertical(imk_vector3 up, double *x, size_t stride)
     }
 }
 
-static void make_symmetric(imk_navigation_filter *f)
+/* Rows 0-8 of A P, A the matrix of the step without the decays, by the structure of A: A P is phi
+ * P + gamma times the sums of the rows of the parts. @param row  9 x n */
+static void advance_rows(const imk_navigation_filter *f, const imki_filter_step *step, double *row)
 {
     const size_t n = f->states;
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < i; j++) {
-            const double mean = 0.5 * (f->covariance[i * n + j] + f->covariance[j * n + i]);
-            f->covariance[i * n + j] = f->covariance[j * n + i] = mean;
-        }
-}
-
-/* Parts of the biases: their noise, and the decay of their estimates. */
-static void advance_parts(imk_navigation_filter *f, const part_step *parts)
-{
-    size_t state = ERRORS;
-    for (int sensor = 0; sensor < 2; sensor++) {
-        f->bias_sum[sensor] = (imk_vector3){{0}};
-        for (size_t p = 0; p < f->parts[sensor]; p++, parts++)
-            for (int axis = 0; axis < 3; axis++, state++) {
-                f->bias[sensor][p][axis] *= parts->decay;
-                f->bias_sum[sensor].v[axis] += f->bias[sensor][p][axis];
-                f->covariance[state * f->states + state] += parts->noise[axis];
+    const double *p = f->covariance;
+    double sum[6][IMKI_FILTER_STATES_MAX];
+    memset(sum, 0, sizeof sum);
+    for (int sensor = 0; sensor < 2; sensor++)
+        for (size_t part = 0; part < f->parts[sensor]; part++)
+            for (size_t axis = 0; axis < 3; axis++) {
+                const double *from = p + part_state(f, sensor, part, axis) * n;
+                double *to = sum[3 * sensor + (int)axis];
+                for (size_t j = 0; j < n; j++)
+                    to[j] += from[j];
             }
+    memset(row, 0, ERRORS * n * sizeof *row);
+    for (size_t i = 0; i < ERRORS; i++) {
+        double *to = row + i * n;
+        for (size_t k = 0; k < ERRORS; k++) {
+            const double factor = step->phi[i][k], *from = p + k * n;
+            for (size_t j = 0; j < n; j++)
+                to[j] += factor * from[j];
+        }
+        for (size_t k = 0; k < 6; k++) {
+            const double factor = step->gamma[k / 3][i][k % 3], *from = sum[k];
+            for (size_t j = 0; j < n; j++)
+                to[j] += factor * from[j];
+        }
     }
 }
 
-static void advance_cross(imk_navigation_filter *f, const step_matrices *step,
-                          const part_step *parts, imk_vector3 up)
+/* P <- A P A^T + noise, its two halves the same to the last bit. */
+static void advance_covariance(imk_navigation_filter *f, const step_matrices *step,
+                               const rest_step *rest)
+{
+    const size_t n = f->states;
+    double *p = f->covariance, *row = f->scratch;
+    advance_rows(f, &step->by, row);
+    for (size_t i = 0; i < ERRORS; i++) {
+        double bias[6] = {0};
+        const double *of = row + i * n;
+        for (int sensor = 0; sensor < 2; sensor++)
+            for (size_t part = 0; part < f->parts[sensor]; part++)
+                for (size_t axis = 0; axis < 3; axis++)
+                    bias[3 * sensor + (int)axis] += of[part_state(f, sensor, part, axis)];
+        for (size_t j = 0; j <= i; j++) {
+            double sum = step->noise[i][j];
+            for (size_t k = 0; k < ERRORS; k++)
+                sum += of[k] * step->by.phi[j][k];
+            for (size_t k = 0; k < 6; k++)
+                sum += bias[k] * step->by.gamma[k / 3][j][k % 3];
+            p[i * n + j] = p[j * n + i] = sum;
+        }
+    }
+    for (size_t i = 0; i < ERRORS; i++)
+        for (size_t j = ERRORS; j < n; j++)
+            p[i * n + j] = p[j * n + i] = row[i * n + j] * rest->decay[j - ERRORS];
+    for (size_t i = ERRORS; i < n; i++) {
+        const double factor = rest->decay[i - ERRORS];
+        for (size_t j = ERRORS; j < n; j++)
+            p[i * n + j] *= factor * rest->decay[j - ERRORS];
+        p[i * n + i] += rest->noise[i - ERRORS];
+    }
+}
+
+static void hold_covariance(imk_navigation_filter *f, imk_vector3 up)
+{
+    const size_t n = f->states;
+    double *p = f->covariance;
+    for (size_t column = 0; column < n; column++)
+        hold_vertical(up, p + column, n);
+    for (size_t row = 0; row < n; row++)
+        hold_vertical(up, p + row * n, 1);
+    for (size_t i = 0; i < 6; i++)
+        for (size_t j = 0; j < i; j++)
+            p[i * n + j] = p[j * n + i] = 0.5 * (p[i * n + j] + p[j * n + i]);
+    for (size_t i = 0; i < 6; i++)
+        for (size_t j = 6; j < n; j++)
+            p[j * n + i] = p[i * n + j];
+}
+
+/* The estimates of biases and of errors of aids decay as these do. */
+static void advance_estimates(imk_navigation_filter *f, const rest_step *rest)
+{
+    const double *decay = rest->decay;
+    for (int sensor = 0; sensor < 2; sensor++) {
+        f->bias_sum[sensor] = (imk_vector3){{0}};
+        for (size_t p = 0; p < f->parts[sensor]; p++)
+            for (int axis = 0; axis < 3; axis++) {
+                f->bias[sensor][p][axis] *= *decay++;
+                f->bias_sum[sensor].v[axis] += f->bias[sensor][p][axis];
+            }
+    }
+    for (size_t k = 0; k < f->aid_states; k++)
+        f->aid_state[k].estimate *= *decay++;
+}
+
+static void advance_cross(imk_navigation_filter *f, const imki_filter_step *step,
+                          const rest_step *rest, imk_vector3 up)
 {
     for (size_t axis = 0; axis < 3; axis++) {
         const double n = f->settings.gyro.white[axis];
-        advance(f, step, parts, f->cross + axis, 3);
+        advance(f, step, rest->decay, f->cross + axis, 3);
         for (size_t i = 0; i < ERRORS; i++)
             f->cross[3 * i + axis] += step->gamma[IMKI_GYRO_PART][i][axis] * n * n;
         if (f->settings.hold_height)
@@ -236,33 +354,22 @@ void imki_navigation_filter_propagate(imk_navigation_filter *f)
     if (!(h > 0.0))
         return;
     step_matrices step;
-    part_step parts[2 * IMK_BIAS_PARTS_MAX];
+    rest_step rest;
     imk_matrix3 c = f->turned;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             c.m[i][j] /= h;
     make_step(f, h, &c, imk_vector3_scale(f->force, 1.0 / h), &step);
-    for (size_t p = 0; p < f->parts[0]; p++)
-        parts[p] = make_part(&f->settings.gyro.part[p], h);
-    for (size_t p = 0; p < f->parts[1]; p++)
-        parts[f->parts[0] + p] = make_part(&f->settings.accel.part[p], h);
-
+    make_rest(f, h, &rest);
     const imk_vector3 up = upward(imk_gravity_ecef(f->strapdown.state.position));
-    for (size_t column = 0; column < f->states; column++)
-        advance(f, &step, parts, f->covariance + column, f->states);
-    for (size_t row = 0; row < f->states; row++)
-        advance(f, &step, parts, f->covariance + row * f->states, 1);
-    for (size_t i = 0; i < ERRORS; i++)
-        for (size_t j = 0; j < ERRORS; j++)
-            f->covariance[i * f->states + j] += step.noise[i][j];
-    for (size_t column = 0; column < f->states && f->settings.hold_height; column++)
-        hold_vertical(up, f->covariance + column, f->states);
-    for (size_t row = 0; row < f->states && f->settings.hold_height; row++)
-        hold_vertical(up, f->covariance + row * f->states, 1);
-    advance_parts(f, parts);
+    advance_covariance(f, &step, &rest);
+    if (f->settings.hold_height)
+        hold_covariance(f, up);
+    advance_estimates(f, &rest);
+    if (f->smoother)
+        imki_smoother_step(f->smoother, &step.by, rest.decay, f->settings.hold_height ? &up : NULL);
     if (f->settings.rotation_sigma > 0.0)
-        advance_cross(f, &step, parts, up);
-    make_symmetric(f);
+        advance_cross(f, &step.by, &rest, up);
     f->span = 0.0;
     memset(&f->turned, 0, sizeof f->turned);
     f->force = (imk_vector3){{0}};

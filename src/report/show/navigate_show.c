@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The result of a navigation: the attitude at the start, the track, its end. */
-#include "show_internal.h"
+#include "navigate_aids_show_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -47,6 +47,7 @@ static void show_inputs(const imk_navigate_log *n, const char *name, imk_result 
     imk_result_quantity(result, "latitude", n->settings.place.latitude, "rad");
     imk_result_quantity(result, "longitude", n->settings.place.longitude, "rad");
     imk_result_quantity(result, "height", n->settings.place.height, "m");
+    imk_result_flag(result, "smoothed", n->settings.smooth);
     imk_result_text(result, "vertical", n->settings.hold_height ? "slaved" : "free");
     imk_result_end(result);
 }
@@ -116,6 +117,7 @@ static void show_data(const imk_navigate_log *n, const char *name, imk_result *r
     imk_result_number(result, "chi_square_per_degree",
                       c->degrees > 0 ? c->chi_square / (double)c->degrees : (double)NAN);
     imk_result_end(result);
+    imki_show_aids_data(n, result);
     imk_result_end(result);
 }
 
@@ -269,6 +271,10 @@ static void show_track(const imk_navigate_log *n, const char *name, imk_result *
     imk_figure_builder *figure = imk_result_figure(
         result, name, 2,
         !n->settings.model ? "Horizontal track, and position and velocity against time."
+        : n->aid_count > 0
+            ? "Grey: 1 sigma of the error that the model predicts, about the track. Innovations "
+              "are "
+              "divided by their 1 sigma: if model and sigmas are right, one of 20 is beyond 2."
         : n->at_rest
             ? "Grey: 1 sigma of the error that the model predicts, about the start, where the unit "
               "stood."
@@ -283,6 +289,7 @@ static void show_track(const imk_navigate_log *n, const char *name, imk_result *
         if (lines[k].y < IMK_TRACK_SIGMA || n->settings.model)
             add_line(n, &lines[k], figure);
     }
+    imki_show_aids_panels(n, figure);
 }
 
 /* ---- all ---- */
@@ -311,6 +318,9 @@ static void show_page(const imk_navigate_log *n, const char *name, imk_result *r
         hypot(n->attitude_sigma[0], n->attitude_sigma[1]) / degree, n->attitude_sigma[2] / degree);
     imk_result_heading(result, "Track");
     show_track(n, name, result);
+    if (n->aid_count > 0)
+        imk_result_heading(result, "Aids");
+    imki_show_aids_table(n, result);
     imk_result_heading(result, "At the end");
 }
 
@@ -319,6 +329,7 @@ static void show_rest(const imk_navigate_log *n, imk_result *result)
     const imk_navigation_filter_counts *c = &n->counts;
     show_end_attitude(n, result);
     show_drift(n, 0, result);
+    imki_show_aids_table(n, result);
     if (c->accepted + c->refused > 0)
         imk_result_line(result,
                         "Zero-velocity updates: %llu, refused %llu; innovations squared %.2f times "

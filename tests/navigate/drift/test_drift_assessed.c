@@ -101,7 +101,8 @@ static void flicker_is_that_of_the_samples(void **state)
     model.gyro.noise.bias_instability.value[1] = 1e-6;
     for (size_t n = 10; n <= 1000; n *= 10)
         CHECK_RELATIVE(allan_variance(&model, 10.0, (double)n / 10.0),
-                       imk_flicker_sampled_allan_variance(1e-6, 0.1, n), n == 10 ? 0.02 : 0.01);
+                       imk_flicker_sampled_allan_variance((imk_flicker){1e-6, 0}, 0.1, n),
+                       n == 10 ? 0.02 : 0.01);
 }
 
 /* What is left are the ends of the sum: of n samples T/(n dt). */

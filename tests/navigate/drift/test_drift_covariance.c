@@ -368,13 +368,13 @@ static void presets_meet_their_claims(void **state)
         const char *name;
         double t, printed, at_most, at_least; /* CEP [m] */
     } preset[] = {
-        {"strategic", 86400, 0.47 * 1852, 1852, 0},
-        {"strategic", 3600, 0.061 * 1852, 1852, 0},
-        {"navigation", 3600, 0.75 * 1852, 1852, 0},
-        {"navigation", 86400, 6.3 * 1852, 44448, 0},
-        {"tactical", 3600, 83 * 1852, 1e9, 10 * 1852},
+        {"strategic", 86400, 0.43 * 1852, 1852, 0},
+        {"strategic", 3600, 0.056 * 1852, 1852, 0},
+        {"navigation", 3600, 0.71 * 1852, 1852, 0},
+        {"navigation", 86400, 6.0 * 1852, 44448, 0},
+        {"tactical", 3600, 80 * 1852, 1e9, 10 * 1852},
         {"tactical", 60, 17, 1e9, 0},
-        {"AHRS", 60, 36, 1e9, 17},
+        {"AHRS", 60, 35, 1e9, 17},
         {"control", 60, 1200, 1e9, 36},
     };
     for (size_t i = 0; i < sizeof preset / sizeof preset[0]; i++) {

@@ -523,7 +523,7 @@ static void test_residual_numbers(void **state)
                 parameters[p].sigma[i] = 0.01 * (i + 1);
             }
         drawn = known;
-        imki_drift_residual(&drawn, random, run);
+        imki_drift_residual(&drawn, NULL, random, run);
         for (size_t p = 0; p < sizeof parameters / sizeof *parameters; p++)
             for (int i = 0; i < 3 * parameters[p].columns; i++) {
                 const int columns = parameters[p].columns;
@@ -556,7 +556,7 @@ static void test_residual_distribution(void **state)
     size_t beyond = 0;
     for (uint32_t run = 0; run < RUNS; run++) {
         drawn = known;
-        imki_drift_residual(&drawn, random, run);
+        imki_drift_residual(&drawn, NULL, random, run);
         const double n = drawn.timing.rate_error.value / 2e-5;
         square += n * n;
         mean += n / sqrt(RUNS);

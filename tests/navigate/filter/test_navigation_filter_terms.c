@@ -157,15 +157,17 @@ static void test_velocity_noise(void **state)
     imk_navigation_filter_default(&s);
     s.hold_height = true;
     s.velocity_sigma = 1e-3;
+    s.aid_count = 1;
+    s.aid[0] = imk_aid_default(IMK_AID_POSITION);
     set3(s.accel.quantization, 0.05);
     imk_navigation_filter *filter = start_at_rest(&m, &s, 0.05);
     assert_true(imk_navigation_filter_stand(filter));
     CHECK_RELATIVE(imk_navigation_filter_counted(filter).chi_square, 25e-4 / (25e-4 + 1e-6), 1e-9);
-    imk_geodetic above = rest_place;
-    above.height = 1000.0;
-    assert_true(imk_navigation_filter_fix(filter, above, (imk_vector3){{no, no, 1.0}}));
-    assert_int_equal(imk_navigation_filter_counted(filter).accepted, 1);
-    assert_int_equal(imk_navigation_filter_counted(filter).refused, 0);
+    const imk_aid_reading above = {.time = 0.05,
+                                   .value = {rest_place.latitude, rest_place.longitude, 1000.0},
+                                   .sigma = {no, no, 1.0}};
+    assert_int_equal(imk_navigation_filter_aid(filter, 0, &above), IMK_AID_NOT_USED);
+    assert_int_equal(imk_navigation_filter_aided(filter, 0).refused, 0);
 }
 
 /* What a level unit at rest reads; of its attitude's uncertainty only the tilt turns gravity. */

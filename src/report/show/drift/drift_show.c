@@ -104,6 +104,7 @@ static void show_case(const imk_drift_models *r, const imk_drift_shown *shown,
     imk_result_end(result);
     imk_result_quantity(result, "budget_time", times->time[one->time], "s");
     show_budget_data(one, result);
+    imk_result_number(result, "correlation_share", one->correlation_share);
     imki_show_texts(result, "omitted", one->analysis->omitted_count, one->analysis->omitted);
     imki_show_missing_data(one->missing_count, one->missing, result);
     imki_show_assumed_data(assumed_of(r, shown, one), result);

@@ -170,6 +170,9 @@ static void show_shares(const imk_drift_models *r, const imk_drift_case *one, im
         imk_table_add(table, "< 0.1 %%");
     else if (rest_count > 0)
         imk_table_add(table, "%.1f %%", 100 * rest);
+    if (fabs(one->correlation_share) >= 0.0005)
+        imk_table_row(table, "correlation of calibrated values\t%.1f %%",
+                      100 * one->correlation_share);
 }
 
 /* The moments of a source, or of all sources together (index after the last), if its shift is at
