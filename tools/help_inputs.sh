@@ -67,6 +67,13 @@ navigate)
         'vibration: [sine z 0.02 g at 28 Hz]' >drive.yaml
     imukit simulate tactical --motion drive.yaml --rate 100Hz -o drive.csv
     ;;
+join)
+    imukit physics fibre_optic --reduce -o gyro.yaml >/dev/null
+    imukit physics pendulous_servo --reduce -o accel.yaml >/dev/null
+    for axis in a b c; do
+        imukit physics ring_laser --reduce --single-axis -o $axis.yaml >/dev/null
+    done
+    ;;
 merge)
     for part in 1 2; do
         imukit drift tactical --duration 1min --rate 10Hz --monte-carlo 16 --shard $part/2 \

@@ -12,9 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const state_names[IMK_DRIFT_STATES] = {
-    "position_north", "position_east",  "position_down", "velocity_north", "velocity_east",
-    "velocity_down",  "attitude_north", "attitude_east", "attitude_down"};
+/* By imk_attitude_errors: so a file says which attitude its errors are of, and one from before
+ * there was a choice is read as what it holds. */
+static const char *const state_names[2][IMK_DRIFT_STATES] = {
+    {"position_north", "position_east", "position_down", "velocity_north", "velocity_east",
+     "velocity_down", "displayed_north", "displayed_east", "displayed_down"},
+    {"position_north", "position_east", "position_down", "velocity_north", "velocity_east",
+     "velocity_down", "attitude_north", "attitude_east", "attitude_down"}};
 static const char *const state_units[IMK_DRIFT_STATES] = {"m",   "m",   "m",   "m/s", "m/s",
                                                           "m/s", "rad", "rad", "rad"};
 
@@ -125,7 +129,7 @@ int drift_runs(const drift_options *o, const drift_scene *scene, imk_drift_model
                              .time_count = scene->times.row_count,
                              .time = time,
                              .state_count = IMK_DRIFT_STATES,
-                             .state = state_names,
+                             .state = state_names[c.settings.attitude_errors],
                              .unit = state_units};
     const int code = run_campaign(o, r, &c, &campaign);
     free(time);
@@ -135,15 +139,22 @@ int drift_runs(const drift_options *o, const drift_scene *scene, imk_drift_model
 
 /* ---- a results file ---- */
 
+static bool has_states(const imk_campaign *c, imk_attitude_errors stated)
+{
+    bool ours = c->state_count == IMK_DRIFT_STATES;
+    for (size_t i = 0; ours && i < IMK_DRIFT_STATES; i++)
+        ours = strcmp(c->state[i], state_names[stated][i]) == 0;
+    return ours;
+}
+
 static int check_results(const imk_campaign_results *results, const char *path)
 {
     const imk_campaign *c = &results->campaign;
-    bool ours = c->state_count == IMK_DRIFT_STATES && results->runs > 0;
-    for (size_t i = 0; ours && i < IMK_DRIFT_STATES; i++)
-        ours = strcmp(c->state[i], state_names[i]) == 0;
-    return ours ? -1
-                : command_failed("%s: the results of another kind of campaign, not of imukit drift",
-                                 path);
+    const bool ours = has_states(c, IMK_ATTITUDE_LOCAL) || has_states(c, IMK_ATTITUDE_EARTH);
+    return ours && results->runs > 0
+               ? -1
+               : command_failed("%s: the results of another kind of campaign, not of imukit drift",
+                                path);
 }
 
 /* The times of the file alone, so that tables and figures of runs can be made. */
@@ -169,6 +180,8 @@ static void show_inputs(const imk_campaign_results *file, const char *path, imk_
     imk_result_count(result, "runs", (long long)c->run_count);
     imk_result_count(result, "first", (long long)file->run[0]);
     imk_result_count(result, "count", (long long)file->runs);
+    imk_result_text(result, "attitude_errors",
+                    has_states(c, IMK_ATTITUDE_EARTH) ? "earth" : "local");
     (void)imk_result_json(result, "parameters", c->parameters);
     imk_result_end(result);
 }
@@ -189,8 +202,11 @@ static int show(const imk_drift_models *r, const imk_campaign_results *file, con
         list_add(&words, " of %llu runs, from run %llu on", whole, first);
     else
         list_add(&words, " runs");
-    list_add(&words, ", seed %llu, imukit %s. In brackets 95 %% intervals.",
-             (unsigned long long)c->seed, c->version);
+    list_add(&words, ", seed %llu, imukit %s.%s In brackets 95 %% intervals.",
+             (unsigned long long)c->seed, c->version,
+             has_states(c, IMK_ATTITUDE_EARTH)
+                 ? " The heading is that against Earth-fixed axes, not the displayed one."
+                 : "");
     imk_show_drift_runs(r, words.text, result);
     list_free(&words);
     imk_result_for(result, IMK_FOR_TERMINAL);

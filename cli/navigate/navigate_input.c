@@ -120,7 +120,7 @@ static void take_numbers(const navigate_options *o, imk_navigate_log_settings *s
     s->method = o->method >= 0 ? (imk_alignment_method)o->method : s->method;
     s->still_velocity = o->still_velocity;
     s->still_rotation = isnan(o->still_rotation) ? 0.0 : o->still_rotation;
-    s->hold_height = o->vertical == 0;
+    s->hold_height = o->vertical < 0 ? !o->aid : o->vertical == 0;
     s->samples = (int)o->samples.value;
     s->interval = o->interval;
     s->standard_gravity = o->standard_gravity;
@@ -143,6 +143,8 @@ int navigate_parse(const navigate_options *o, imk_model *model, imk_navigate_log
         code = parse_heading(o->heading, s);
     if (code < 0)
         code = parse_stops(o, s);
+    if (code < 0)
+        code = navigate_parse_aids(o, s);
     if (code < 0 && o->model) {
         code = command_model(o->model, model, NULL);
         s->model = model;

@@ -10,6 +10,8 @@
 typedef struct navigate_options {
     log_input log;
     const char *position, *attitude, *heading, *model, *zero_velocity, *output, *plot, *report;
+    const char *aid, *aid_map, *aid_sigma, *aid_lever_arm, *speed_lever_arm;
+    double aid_delay, aid_interval, aid_until; /* NaN: not given */
     /* NaN: not given, of align, stop and still_rotation */
     double align, stop, still_velocity, still_rotation, interval, standard_gravity;
     option_integer samples;
@@ -20,5 +22,8 @@ typedef struct navigate_options {
 /* What is asked. @param model  the settings have it when it is asked for
  * @return -1 or the exit code, the message printed */
 int navigate_parse(const navigate_options *o, imk_model *model, imk_navigate_log_settings *s);
+
+/* The same of aids. @return -1 or the exit code, the message printed */
+int navigate_parse_aids(const navigate_options *o, imk_navigate_log_settings *s);
 
 #endif

@@ -10,8 +10,8 @@
  *
  *      0-2  position, north, east, down [m]
  *      3-5  velocity, north, east, down [m/s]
- *      6-8  attitude [rad], rotation vector about north, east, down: C_nb (estimated) =
- *           exp([e x]) C_nb (true)
+ *      6-8  attitude [rad], about north, east, down, as displayed or in Earth-fixed axes
+ *           (imk_attitude_errors)
  *
  *  in the north-east-down axes of the true place. Equations: docs/theory/error-growth.md.
  *
@@ -50,6 +50,18 @@ typedef enum imk_alignment_source {
                         over alignment_time (imk_alignment, method means) */
 } imk_alignment_source;
 
+/** Which error of the attitude is meant, in results and in initial_sigma. */
+typedef enum imk_attitude_errors {
+    IMK_ATTITUDE_LOCAL = 0, /**< phi, of what a display shows: attitude relative to the local level
+                               at the computed position, against the true one relative to the level
+                               at the true position (imk_displayed_attitude_error()). Tilt about
+                               north and east, and the error of the heading, in (-pi, pi]; of the
+                               grid heading beyond IMK_GRID_LATITUDE */
+    IMK_ATTITUDE_EARTH      /**< psi, against Earth-fixed axes: rotation vector, C_eb (estimated) =
+                               exp([psi x]) C_eb (true). It holds what a display hides: an error of the
+                               position that the attitude follows */
+} imk_attitude_errors;
+
 /** Motion, navigator and times of the analysis. Start from imk_drift_default(). */
 typedef struct imk_drift_settings {
     uint32_t cookie;
@@ -61,7 +73,14 @@ typedef struct imk_drift_settings {
     imk_alignment_source alignment;
     double alignment_time;                  /**< [s]; 1 … 1e7, default 300 */
     double initial_sigma[IMK_DRIFT_STATES]; /**< 1 sigma of independent errors at the start; those
-                                               of attitude are used for IMK_ALIGNED_GIVEN only */
+                                               of attitude are used for IMK_ALIGNED_GIVEN only, and
+                                               are in the sense of `attitude_errors` */
+    imk_attitude_errors attitude_errors;
+    /** 1 sigma of what gravity has beside normal gravity across the vertical, north and east each
+     *  [m/s^2]; 0 … 0.1, default 0. 25 to 50 ug, 5 to 10 arc seconds, are usual. */
+    double gravity_deflection;
+    double gravity_distance; /**< its correlation distance along the ground [m]: a Gauss-Markov
+                                process of first order; default 20 km. 0: constant, as at rest */
     bool compensated;
     size_t time_count;
     const double *time; /**< times at which errors are computed, from the start of navigation:
@@ -165,8 +184,8 @@ typedef struct imk_drift_figures {
     double north, east, height; /**< root mean squares [m] */
     double velocity;            /**< horizontal, rms [m/s] */
     double climb;               /**< vertical velocity, rms [m/s] */
-    double tilt;                /**< roll and pitch together, rms [rad] */
-    double heading;             /**< rms [rad] */
+    double tilt;                /**< about the horizontal axes together, rms [rad] */
+    double heading;             /**< about the vertical, rms [rad] */
 } imk_drift_figures;
 
 /** Figures of a normal distribution, mean included; the radii have a relative error of 1e-9. */

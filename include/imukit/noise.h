@@ -53,6 +53,9 @@ enum {
     IMK_TERM_PHYSICS = 11,
     IMK_TERM_RESIDUAL = 12, /**< errors of known values left after calibration (drift.h) */
     IMK_TERM_INITIAL = 13,  /**< errors at the start of a navigation (drift.h) */
+    IMK_TERM_AID = 16,      /**< errors of aids; the instance is their kind (simulate_log.h), or
+                               their number (drift.h) */
+    IMK_TERM_GRAVITY = 17,  /**< deflection of gravity along a path (drift.h) */
 #define IMK_TERM_NUMBER(NAME, name, number) IMK_TERM_##NAME = number,
     IMK_NOISE_TERM_LIST(IMK_TERM_NUMBER)
 #undef IMK_TERM_NUMBER

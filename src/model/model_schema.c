@@ -127,6 +127,8 @@ const imki_field imki_triad_fields[] = {
      NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
 };
 const size_t imki_triad_field_count = sizeof imki_triad_fields / sizeof imki_triad_fields[0];
+_Static_assert(sizeof imki_triad_fields / sizeof imki_triad_fields[0] <= 64,
+               "stated_zero has a bit for each field");
 
 /* ---- terms ----------------------------------------------------------------------------------- */
 

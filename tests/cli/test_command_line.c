@@ -214,7 +214,7 @@ static void test_whole_numbers(void **state)
     /* No option was forgotten. */
     assert_int_equal(
         run("for v in allan calibrate compensate convert devices drift evaluate grade "
-            "identify info merge navigate physics simulate spectrum; do $I $v --help; done "
+            "identify info join merge navigate physics simulate spectrum; do $I $v --help; done "
             "| grep -c -e '--[a-z-]* N  *[A-Za-z]' -e '--[a-z-]* N$'"),
         0);
     assert_int_equal(atoi(out), sizeof options / sizeof options[0]);

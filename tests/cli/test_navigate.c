@@ -338,6 +338,8 @@ static void test_coarse_gyros(void **state)
                          "--model coarse.yaml"),
                      0);
     check_contains(out, "north not found", "heading");
+    check_contains(out, "(means, because the gyro biases hide the Earth's rotation)", "method");
+    check_contains(err, "add --heading", "north_unknown");
     sweep();
 }
 

@@ -64,10 +64,22 @@ static double gravity_ratio(const imk_navigate_log *n)
            imk_normal_gravity(place->latitude, place->height);
 }
 
+/* 1 sigma of a sensor's bias as the model has it, worst axis; 0: no model. */
+static double bias_size(const imk_navigate_log *n, int sensor)
+{
+    const imk_model *model = n->settings.model;
+    const imk_triad *triad = !model ? NULL : sensor == 0 ? &model->gyro : &model->accel;
+    double worst = 0.0;
+    for (int i = 0; i < 3 && triad; i++)
+        worst = fmax(worst, hypot(triad->bias.repeatability.value[i],
+                                  triad->noise.bias_instability.value[i]));
+    return worst;
+}
+
 static imk_status check_force(imk_navigate_log *n, imk_error *error)
 {
     const double tolerance = 0.05, ratio = gravity_ratio(n);
-    if (fabs(ratio - 1.0) <= tolerance)
+    if (fabs(ratio - 1.0) <= tolerance + 3.0 * bias_size(n, 1) / 9.80665)
         return IMK_OK;
     const imk_log_column *column = first_column(n, IMK_QUANTITY_SPECIFIC_FORCE);
     const char *unit = likely_unit(column, ratio, tolerance);
@@ -86,17 +98,6 @@ static void check_gravity_unit(imk_navigate_log *n)
         imki_find(&n->findings, IMK_FINDING_WARNING, "standard_gravity", NULL, IMKI_NUMBERS(ratio));
 }
 
-/* 1 sigma of a gyro's bias as the model has it, worst axis. */
-static double bias_size(const imk_navigate_log *n)
-{
-    const imk_model *model = n->settings.model;
-    double worst = 0.0;
-    for (int i = 0; i < 3 && model; i++)
-        worst = fmax(worst, hypot(model->gyro.bias.repeatability.value[i],
-                                  model->gyro.noise.bias_instability.value[i]));
-    return worst;
-}
-
 /* The angle between force and rotation is that of the place: 90 deg + latitude. */
 static void check_rotation(imk_navigate_log *n)
 {
@@ -105,7 +106,7 @@ static void check_rotation(imk_navigate_log *n)
     const double sine =
         -imk_vector3_dot(rate, force) / (imk_vector3_norm(rate) * imk_vector3_norm(force));
     const double latitude = asin(fmin(1.0, fmax(-1.0, -sine)));
-    const double tolerance = 0.1 + 3.0 * bias_size(n) / IMK_EARTH_RATE;
+    const double tolerance = 0.1 + 3.0 * bias_size(n, 0) / IMK_EARTH_RATE;
     if (!(fabs(ratio - 1.0) <= tolerance)) {
         const imk_log_column *column = first_column(n, IMK_QUANTITY_ANGULAR_RATE);
         const char *unit = likely_unit(column, ratio, 0.1);
@@ -116,7 +117,7 @@ static void check_rotation(imk_navigate_log *n)
         return;
     }
     /* Of the angle 3 deg are a bias of 0.8 deg/h, or an accelerometer's of 50 mg. */
-    const double diagnostic = 3.0 * degree + 3.0 * bias_size(n) / IMK_EARTH_RATE;
+    const double diagnostic = 3.0 * degree + 3.0 * bias_size(n, 0) / IMK_EARTH_RATE;
     const double place = n->settings.place.latitude;
     const bool opposite = fabs(latitude + place) < diagnostic && fabs(latitude) > diagnostic;
     if (opposite || fabs(latitude - place) > diagnostic)
@@ -174,17 +175,6 @@ static void given_attitude(imk_navigate_log *n)
     n->attitude_sigma[1] = hypot(s * roll, c * pitch);
 }
 
-/* Gravity's turn in inertial axes is lost in biases larger than the Earth's rotation, and the tilt
- * with it: of 20 deg that they turn in the time it is off by 14. The mean force asks no gyro. */
-static imk_alignment_method chosen_method(const imk_navigate_log *n)
-{
-    const double coarse = 1.5 * IMK_EARTH_RATE;
-    if (n->settings.method_given)
-        return n->settings.method;
-    return imk_vector3_norm(mean_reading(n, 0)) > coarse ? IMK_ALIGNMENT_MEANS
-                                                         : IMK_ALIGNMENT_INERTIAL;
-}
-
 static imk_status self_align(imk_navigate_log *n, imki_arena *scratch, imk_error *error)
 {
     const double dt = n->record.dt;
@@ -230,14 +220,31 @@ static void turn_to_heading(imk_navigate_log *n)
     n->alignment.state = n->start;
 }
 
+/* By means first, unless the method is stated: they say whether the biases leave a north to find.
+ */
+static imk_status align_by_choice(imk_navigate_log *n, imki_arena *scratch, imk_error *error)
+{
+    const bool given = n->settings.method_given;
+    n->method = given ? n->settings.method : IMK_ALIGNMENT_MEANS;
+    imk_status status = self_align(n, scratch, error);
+    if (status == IMK_OK)
+        imki_navigate_find_north(n);
+    if (given || n->coarse || status == IMK_ERROR_MEMORY)
+        return status;
+    n->method = IMK_ALIGNMENT_INERTIAL;
+    status = self_align(n, scratch, error);
+    if (status == IMK_OK)
+        imki_navigate_doubt_heading(n);
+    return status;
+}
+
 imk_status imki_navigate_align(imk_navigate_log *n, imki_arena *scratch, imk_error *error)
 {
     if (!imki_navigate_aligns(n)) {
         given_attitude(n);
         return IMK_OK;
     }
-    n->method = chosen_method(n);
-    const imk_status status = self_align(n, scratch, error);
+    const imk_status status = align_by_choice(n, scratch, error);
     if (status != IMK_OK)
         return status;
     n->start = n->alignment.state;

@@ -29,6 +29,17 @@ imk_status imki_navigate_channels(imk_navigate_log *n, imk_error *error);
 imk_status imki_navigate_check(imk_navigate_log *n, imk_error *error);
 /* The attitude at the start. */
 imk_status imki_navigate_align(imk_navigate_log *n, imki_arena *scratch, imk_error *error);
+/* After an alignment: do the biases of the gyros hide north? The sigma of the heading is made what
+ * it is then. */
+void imki_navigate_find_north(imk_navigate_log *n);
+/* Without a model, how far the readings let the heading be doubted. */
+void imki_navigate_doubt_heading(imk_navigate_log *n);
+/* Is the heading that which the gyros found? */
+bool imki_navigate_north(const imk_navigate_log *n);
+/* Of the filter's settings: biases that the readings alone say. */
+void imki_navigate_free_biases(const imk_navigate_log *n, imk_navigation_filter_settings *settings);
+/* The biases of the gyros of a filter that has just started, from the alignment. */
+void imki_navigate_start_biases(imk_navigate_log *n, imk_navigation_filter *filter);
 /* Through the record, into the track, which is the allocator's of the record. */
 imk_status imki_navigate_follow(imk_navigate_log *n, const imk_job *job, imki_arena *scratch,
                                 imk_error *error);

@@ -167,9 +167,11 @@ static void advance(work *w, double time, double goal, const imk_executor *execu
             step->slot = slot_of(w, step->h, step->moments);
         }
         w->reports = !(time < goal);
-        if (w->reports)
+        if (w->reports) {
             imki_drift_node_at(&w->walk, w->walk.motion.start + (w->walk.rests ? 0.0 : goal),
                                &w->report);
+            imki_drift_level(w->walk.earth, w->walk.settings->attitude_errors, &w->report);
+        }
         imk_execute(executor, w->step_count, fill_step, w);
         run_block(w, move_source, executor);
     }

@@ -19,7 +19,7 @@ enum {
     IMKI_DRIFT_MOMENTS = 6,  /* powers of time in a column over a step */
     IMKI_DRIFT_SLOTS = 32,   /* lengths of steps that drivers remember */
     IMKI_DRIFT_BLOCK = 16,   /* steps made ready at a time */
-    IMKI_DRIFT_COLUMNS = 128 /* 57 of gyros, 48 of accelerometers, 3 of the clock, at most */
+    IMKI_DRIFT_COLUMNS = 128 /* 57 of gyros, 48 of accelerometers, 3 of the clock, 2 of gravity */
 };
 
 typedef struct imki_matrix9 {
@@ -88,6 +88,7 @@ typedef enum imki_column_kind {
     IMKI_COLUMN_DELAY,    /* the derivative of -u: a filter's delay */
     IMKI_COLUMN_SKEW,     /* delay of all accelerometers */
     IMKI_COLUMN_CLOCK,    /* rate error of the sample clock */
+    IMKI_COLUMN_GRAVITY,  /* less along north or east: its driver is that of the step */
     IMKI_COLUMN_JITTER    /* shift of samples in time; its last one stays, like what is rounded */
 } imki_column_kind;
 
@@ -176,8 +177,9 @@ typedef struct imki_drift_node {
     imki_matrix9 keep;        /* x <- keep x: what a slaved vertical leaves; without it unity */
     imki_matrix9 full;        /* x with the vertical velocity that belongs to it */
     bool slaved;
-    double climb[3]; /* this velocity, upward, from dr */
-    imki_matrix9 f;  /* F */
+    double climb[3];   /* this velocity, upward, from dr */
+    imki_matrix9 f;    /* F */
+    imk_matrix3 level; /* what dr, in `axes`, turns the displayed level by; 0: psi is stated */
 } imki_drift_node;
 
 typedef struct imki_drift_walk {
@@ -196,6 +198,7 @@ typedef struct imki_drift_step {
     imki_drift_node node[5]; /* at its quarters; at rest the first alone */
     imki_matrix9 phi;
     double (*column)[IMKI_DRIFT_MOMENTS][9]; /* [plan column]: coefficients of u^k/k! */
+    imki_driver_step gravity; /* of the deflection of gravity, which depends on the speed */
 } imki_drift_step;
 
 void imki_drift_node_at(imki_drift_walk *walk, double time, imki_drift_node *node);
@@ -216,6 +219,21 @@ void imki_drift_fill_step(const imki_drift_walk *walk, const imki_drift_plan *pl
 /* Self-alignment as a step that ends at the start: means of the readings make the attitude. */
 void imki_drift_alignment_step(const imki_drift_walk *walk, const imki_drift_plan *plan,
                                imki_drift_step *step);
+
+/* ---- drift_gravity.c ---- */
+
+/* What gravity's deflection decays with in time [1/s]. */
+double imki_gravity_decay(const imk_drift_settings *settings, const imk_motion_state *state);
+void imki_drift_gravity_source(imki_drift_plan *plan, const imk_drift_settings *settings);
+/* step->gravity, of a step whose nodes are there; with `rests` the unit stands. */
+void imki_drift_gravity_step(const imk_drift_settings *settings, bool rests, imki_drift_step *step);
+
+/* ---- drift_axes.c ---- */
+
+/* Set node->level. */
+void imki_drift_level(imki_drift_earth earth, imk_attitude_errors stated, imki_drift_node *node);
+/* T: the nine errors that are stated from x. */
+void imki_drift_result_axes(const imki_drift_node *node, imki_matrix9 *t);
 
 /* ---- drift_propagate.c ---- */
 

@@ -138,7 +138,9 @@ static void move_elements(const imki_drift_plan *plan, imki_drift_part *part,
     double weight[IMKI_DRIFT_MOMENTS][IMKI_DRIFT_MOMENTS] = {{0.0}};
     for (size_t i = part->first; i < part->first + part->count; i++) {
         imki_drift_element *element = &plan->element[i];
-        const imki_driver_step *driver = &over[element->driver][step->slot];
+        const bool of_step = plan->column[element->column].kind == IMKI_COLUMN_GRAVITY;
+        const imki_driver_step *driver =
+            of_step ? &step->gravity : &over[element->driver][step->slot];
         if (!is_noise(element)) {
             move_constant(element, step, driver);
             continue;
@@ -227,28 +229,6 @@ void imki_drift_begin(const imki_drift_plan *plan, imki_drift_part *part,
 
 /* ---- results ---- */
 
-/* Rows and columns of the result from those of x: position, velocity, attitude. */
-static const int place[3] = {6, 3, 0};
-
-/* T: north-east-down components of the errors, in the order of the result. What a slaved vertical
- * makes zero is so to the bit. */
-static void result_axes(const imki_drift_node *node, imki_matrix9 *t)
-{
-    memset(t, 0, sizeof *t);
-    for (int block = 0; block < 3; block++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 9; j++)
-                for (int k = 0; k < 3; k++)
-                    t->m[3 * block + i][j] +=
-                        node->axes.m[k][i] * node->full.m[place[block] + k][j];
-    if (!node->slaved)
-        return;
-    for (int j = 0; j < 9; j++) {
-        t->m[2][j] = 0.0;
-        t->m[5][j] = j >= place[0] ? -node->climb[j - place[0]] : 0.0;
-    }
-}
-
 void imki_drift_moments_at(const imki_drift_plan *plan, const imki_drift_part *part,
                            const imki_drift_node *node, imk_drift_moments *moments)
 {
@@ -267,7 +247,7 @@ void imki_drift_moments_at(const imki_drift_plan *plan, const imki_drift_part *p
         else
             add_square(&p, 1.0, c);
     }
-    result_axes(node, &t);
+    imki_drift_result_axes(node, &t);
     move_covariance(&p, &t);
     for (int i = 0; i < 9; i++) {
         moments->mean[i] = 0.0;

@@ -39,6 +39,7 @@ typedef struct run {
     double interval;            /* of rows in true time [s] */
     double *column[CHANNELS];   /* ROWS each */
     double held[CHANNELS];      /* the row before */
+    double deflection[2];       /* of gravity, north and east, in the row before */
     bool gone;                  /* has left the Earth, or found no attitude */
 } run;
 
@@ -58,6 +59,7 @@ typedef struct crew {
     double start;                  /* of row 0 in the trajectory */
     imk_model *drawn;              /* model of a run with what calibration left */
     double *height, *climb, *time; /* ROWS each */
+    imki_gravity_row *gravity;     /* ROWS; NULL: gravity is normal */
     size_t count;
     run run[LANES];
 } crew;
@@ -97,13 +99,19 @@ static size_t piece_count(const imk_drift_settings *settings)
                : 0;
 }
 
+static size_t gravity_size(const imk_drift_settings *settings)
+{
+    return settings->gravity_deflection > 0.0 ? ROWS * sizeof(imki_gravity_row) : 0;
+}
+
 size_t imk_drift_runs_workspace_size(const imk_model *model, const imk_drift_settings *settings)
 {
     const size_t run_size =
         imki_aligned(CHANNELS * ROWS * sizeof(double)) + simulator_size(model, settings);
     return imki_aligned(sizeof(crew)) + imki_aligned(sizeof(imk_model)) +
            imki_aligned(piece_count(settings) * sizeof(imk_trajectory_piece)) +
-           imki_aligned(3 * ROWS * sizeof(double)) + LANES * run_size + IMKI_ALIGNMENT_SLACK;
+           imki_aligned(3 * ROWS * sizeof(double)) + imki_aligned(gravity_size(settings)) +
+           LANES * run_size + IMKI_ALIGNMENT_SLACK;
 }
 
 /* ---- start ---- */
@@ -149,7 +157,6 @@ static imk_status start_run(crew *c, run *r, imki_parts *memory, imk_error *erro
 {
     const imk_drift_settings *s = c->settings;
     const imk_model *model = c->model;
-    const bool given = s->alignment == IMK_ALIGNED_GIVEN;
     double *columns = imki_take(memory, CHANNELS * ROWS * sizeof(double));
     for (size_t i = 0; i < CHANNELS; i++)
         r->column[i] = columns + i * ROWS;
@@ -171,8 +178,7 @@ static imk_status start_run(crew *c, run *r, imki_parts *memory, imk_error *erro
         return status;
     const double begin = imk_simulator_true_time(r->simulator, (int64_t)c->alignment_rows);
     const imk_navigation_state truth = imki_drift_truth(c->trajectory, begin, 0.0);
-    r->start =
-        imki_drift_displaced(&truth, s->initial_sigma, c->slaved, given, c->random, r->number);
+    r->start = imki_drift_displaced(&truth, s, c->random, r->number);
     return IMK_OK;
 }
 
@@ -181,6 +187,8 @@ static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *
     const imk_drift_settings *s = c->settings;
     c->drawn = imki_take(memory, sizeof *c->drawn);
     c->height = imki_take(memory, 3 * ROWS * sizeof(double));
+    if (s->gravity_deflection > 0.0)
+        c->gravity = imki_take(memory, gravity_size(s));
     c->climb = c->height + ROWS;
     c->time = c->climb + ROWS;
     c->kernel = c->random.kernel;
@@ -242,12 +250,18 @@ static void make_block(crew *c, uint64_t first)
         columns[i] = c->run[i].column;
     }
     imki_simulators_next(c->count, simulators, 1, columns);
+    if (c->gravity)
+        imki_gravity_rows(c->settings, c->trajectory, c->start, c->run[0].interval, first, ROWS,
+                          c->gravity);
     for (size_t i = 0; i < c->count; i++) {
         run *r = &c->run[i];
         divide_counts(&c->model->gyro, r->column);
         divide_counts(&c->model->accel, r->column + 3);
         if (c->model->timing.drops.value > 0.0)
             hold_lost(r, first);
+        if (c->gravity)
+            imki_gravity_deflect(c->settings, c->random, r->number, first, ROWS, c->gravity,
+                                 r->deflection, r->column + 3);
     }
 }
 
@@ -273,7 +287,7 @@ static void finish_alignment(crew *c)
         const imk_vector3 force = {{sum[3] / count, sum[4] / count, sum[5] / count}};
         const imk_geodetic place = imk_geodetic_from_ecef(r->start.position);
         imk_matrix3 c_nb = imk_matrix3_identity();
-        r->gone = imki_alignment_of_means(force, rate, &c_nb) != IMK_OK;
+        r->gone = imki_alignment_of_means(force, rate, place, &c_nb) != IMK_OK;
         r->start.attitude = imk_quaternion_from_matrix(
             imk_matrix3_multiply(imk_ned_axes(place.latitude, place.longitude), c_nb));
     }
@@ -352,7 +366,7 @@ static void look(const crew *c, uint64_t row, size_t stride, double *errors)
         const double time = imk_simulator_true_time(r->simulator, (int64_t)row);
         const imk_navigation_state truth = imki_drift_truth(c->trajectory, time, 0.0);
         const imk_navigation_state state = state_of(c, i);
-        imki_drift_errors(&state, &truth, out);
+        imki_drift_errors(&state, &truth, c->settings->attitude_errors, out);
     }
 }
 

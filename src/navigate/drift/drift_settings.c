@@ -18,8 +18,11 @@ static const double rest_rate = 1e-3 * IMK_EARTH_RATE, rest_velocity = 1e-3 / 60
 
 imk_drift_settings imk_drift_default(void)
 {
-    return (imk_drift_settings){
-        .cookie = COOKIE, .latitude = 0.25 * PI, .rate = 100.0, .alignment_time = 300.0};
+    return (imk_drift_settings){.cookie = COOKIE,
+                                .latitude = 0.25 * PI,
+                                .rate = 100.0,
+                                .alignment_time = 300.0,
+                                .gravity_distance = 20e3};
 }
 
 static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
@@ -90,6 +93,13 @@ static imk_status check_numbers(const imk_drift_settings *s, imk_error *error)
         return refuse(error, "alignment", (double)s->alignment, "\"given\" or \"self\"");
     if (s->alignment == IMK_ALIGNED_SELF && !(s->alignment_time >= 1.0 && s->alignment_time <= 1e7))
         return refuse(error, "alignment_time", s->alignment_time, "1 s to 1e7 s");
+    if (!(s->gravity_deflection >= 0.0 && s->gravity_deflection <= 0.1))
+        return refuse(error, "gravity_deflection", s->gravity_deflection, "0 to 0.1 m/s^2");
+    if (!(s->gravity_distance >= 0.0 && s->gravity_distance <= 1e9))
+        return refuse(error, "gravity_distance", s->gravity_distance, "a distance up to 1e9 m");
+    if (s->attitude_errors != IMK_ATTITUDE_LOCAL && s->attitude_errors != IMK_ATTITUDE_EARTH)
+        return refuse(error, "attitude_errors", (double)s->attitude_errors,
+                      "\"local\" or \"earth\"");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
         if (!(s->initial_sigma[i] >= 0.0 && s->initial_sigma[i] <= 1e9)) {
             const imk_status status = refuse(error, "initial_sigma", s->initial_sigma[i],

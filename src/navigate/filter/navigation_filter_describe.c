@@ -15,7 +15,7 @@
  *                          var end = s^2 + K^2 A
  *     Gauss-Markov         var m = 2 s^2 (a - 1 + e^-a)/a^2,  cov(m, end) = s^2 (1 - e^-a)/a,
  *                          a = A/T */
-#include "zero_velocity_internal.h"
+#include "navigation_filter_internal.h"
 
 #include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
@@ -106,9 +106,10 @@ static void describe(const imk_triad *triad, double dt, imk_vector3 input, imk_v
     add_gauss_markov(triad, errors);
 }
 
-imk_status imk_zero_velocity_describe(const imk_model *model, double dt, imk_vector3 rate,
-                                      imk_vector3 force, imk_zero_velocity_settings *settings,
-                                      imk_error *error)
+imk_status imk_navigation_filter_describe(const imk_model *model, double dt, imk_vector3 rate,
+                                          imk_vector3 force,
+                                          imk_navigation_filter_settings *settings,
+                                          imk_error *error)
 {
     const imk_triad *triad[2] = {&model->gyro, &model->accel};
     static const char *const name[2] = {"gyro", "accel"};
@@ -136,7 +137,7 @@ imki_part_moments imki_bias_part_moments(const imk_bias_part *part, int axis, do
 }
 
 /* What the biases' means make of the attitude, M var(m) M^T, off a covariance. */
-static void take_biases_off(const imk_zero_velocity_settings *settings, double covariance[3][3])
+static void take_biases_off(const imk_navigation_filter_settings *settings, double covariance[3][3])
 {
     const imk_triad_errors *triad[2] = {&settings->gyro, &settings->accel};
     for (int sensor = 0; sensor < 2; sensor++)
@@ -174,9 +175,10 @@ static imk_status make_covariance(const double scale[3], double covariance[3][3]
     return status;
 }
 
-imk_status imk_zero_velocity_aligned(const imk_alignment_result *alignment,
-                                     imk_alignment_method method, bool heading,
-                                     double alignment_time, imk_zero_velocity_settings *settings)
+imk_status imk_navigation_filter_aligned(const imk_alignment_result *alignment,
+                                         imk_alignment_method method, bool heading,
+                                         double alignment_time,
+                                         imk_navigation_filter_settings *settings)
 {
     const imk_navigation_state *start = &alignment->state;
     const imk_geodetic place = imk_geodetic_from_ecef(start->position);
@@ -185,7 +187,7 @@ imk_status imk_zero_velocity_aligned(const imk_alignment_result *alignment,
                                                imk_quaternion_to_matrix(start->attitude));
     const double g = imk_normal_gravity(place.latitude, place.height);
     const double cosine = imk_cos(place.latitude), tangent = imk_sin(place.latitude) / cosine;
-    imk_zero_velocity_settings made = *settings;
+    imk_navigation_filter_settings made = *settings;
     made.alignment_time = alignment_time;
     const double level = method == IMK_ALIGNMENT_INERTIAL ? 0.5 * alignment_time : 0.0;
     const double about = method == IMK_ALIGNMENT_MEANS ? 0.0 : 0.5 * alignment_time;

@@ -9,7 +9,7 @@
  * c = v/(2 m), d = 2 m^2/v [SATTERTHWAITE1946], and the limit a quantile of that, a quarter of the
  * false alarms to each figure. After a long way tilt and biases are not known as well as while
  * learning: q2 and q3 may then be (sqrt(limit) + 4 sigma)^2. */
-#include "imukit/zero_velocity.h"
+#include "imukit/standstill.h"
 
 #include "imukit/distributions.h"
 

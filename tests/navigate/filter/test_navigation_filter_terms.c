@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Single terms of the zero-velocity filter and limits of the standstill detector, each against a
- * closed form that leaves everything else out. How they act together: test_zero_velocity.c. */
+ * closed form that leaves everything else out. How they act together: test_navigation_filter.c. */
 #include "check.h"
 
 #include "imukit/distributions.h"
-#include "imukit/zero_velocity.h"
+#include "imukit/navigation_filter.h"
 
 #include <string.h>
 
@@ -17,13 +17,13 @@ static void set3(double v[3], double value)
     v[0] = v[1] = v[2] = value;
 }
 
-static imk_zero_velocity *start_filter(memory *m, const imk_zero_velocity_settings *s,
-                                       const imk_navigation_state *start)
+static imk_navigation_filter *start_filter(memory *m, const imk_navigation_filter_settings *s,
+                                           const imk_navigation_state *start)
 {
-    imk_zero_velocity *filter;
+    imk_navigation_filter *filter;
     imk_error error;
-    assert_true(imk_zero_velocity_size(s) <= sizeof *m);
-    CHECK_OK(imk_zero_velocity_start(s, start, &filter, m, sizeof *m, &error));
+    assert_true(imk_navigation_filter_size(s) <= sizeof *m);
+    CHECK_OK(imk_navigation_filter_start(s, start, &filter, m, sizeof *m, &error));
     return filter;
 }
 
@@ -72,8 +72,8 @@ static void test_standstill_limits(void **state)
 
 static const imk_geodetic rest_place = {0.8, 0.7, 0.0};
 
-static imk_zero_velocity *start_at_rest(memory *m, const imk_zero_velocity_settings *s,
-                                        double north)
+static imk_navigation_filter *start_at_rest(memory *m, const imk_navigation_filter_settings *s,
+                                            double north)
 {
     const imk_navigation_state start = imk_navigation_state_ned(
         0.0, rest_place, (imk_vector3){{north, 0.0, 0.0}}, imk_matrix3_identity());
@@ -81,13 +81,13 @@ static imk_zero_velocity *start_at_rest(memory *m, const imk_zero_velocity_setti
 }
 
 /* @param turn  what gyro z reads too much in each sample [rad] */
-static void rest_for(imk_zero_velocity *filter, int seconds, double turn)
+static void rest_for(imk_navigation_filter *filter, int seconds, double turn)
 {
     imk_vector3 rate = imk_earth_rate(rest_place.latitude);
     rate.v[2] += turn;
     const imk_vector3 up = {{0.0, 0.0, -imk_normal_gravity(rest_place.latitude, 0.0)}};
     for (int k = 0; k < seconds; k++)
-        imk_zero_velocity_step(filter, 1.0, rate, up);
+        imk_navigation_filter_step(filter, 1.0, rate, up);
 }
 
 /* The mean rate over a stand: two readings of quantization q make its variance 2 q^2/t^2, so an
@@ -97,26 +97,26 @@ static void test_rotation(void **state)
 {
     (void)state;
     static memory m;
-    imk_zero_velocity_estimate end;
-    imk_zero_velocity_settings s;
-    imk_zero_velocity_default(&s);
+    imk_navigation_filter_estimate end;
+    imk_navigation_filter_settings s;
+    imk_navigation_filter_default(&s);
     s.hold_height = true;
     s.velocity_sigma = 10.0; /* of no weight */
     s.rotation_sigma = 1e-12;
     set3(s.gyro.quantization, 1e-6);
-    imk_zero_velocity *filter = start_at_rest(&m, &s, 0.0);
+    imk_navigation_filter *filter = start_at_rest(&m, &s, 0.0);
     rest_for(filter, 1, 1e-6);
-    assert_true(imk_zero_velocity_update(filter));
-    CHECK_RELATIVE(imk_zero_velocity_counted(filter).chi_square, 0.5, 1e-4);
+    assert_true(imk_navigation_filter_stand(filter));
+    CHECK_RELATIVE(imk_navigation_filter_counted(filter).chi_square, 0.5, 1e-4);
 
     set3(s.gyro.quantization, 0.0);
     set3(s.gyro.white, 1e-4);
     filter = start_at_rest(&m, &s, 0.0);
     rest_for(filter, 60, 0.0);
-    imk_zero_velocity_get(filter, &end);
+    imk_navigation_filter_get(filter, &end);
     CHECK_RELATIVE(end.covariance[8][8], 60e-8, 1e-4);
-    assert_true(imk_zero_velocity_update(filter));
-    imk_zero_velocity_get(filter, &end);
+    assert_true(imk_navigation_filter_stand(filter));
+    imk_navigation_filter_get(filter, &end);
     CHECK_BELOW(end.covariance[8][8], 1e-4 * 60e-8); /* the Earth turns by 4 mrad */
 
     set3(s.gyro.white, 0.0);
@@ -124,12 +124,12 @@ static void test_rotation(void **state)
     s.rotation_sigma = 0.01 * imk_earth_rate(rest_place.latitude).v[0];
     filter = start_at_rest(&m, &s, 0.0);
     rest_for(filter, 1, 0.0);
-    assert_true(imk_zero_velocity_update(filter));
-    imk_zero_velocity_get(filter, &end);
+    assert_true(imk_navigation_filter_stand(filter));
+    imk_navigation_filter_get(filter, &end);
     CHECK_RELATIVE(end.covariance[8][8], 0.5e-4, 1e-3);
 
     /* A bias that was found is forgotten as its process is. */
-    imk_zero_velocity_default(&s);
+    imk_navigation_filter_default(&s);
     s.velocity_sigma = 10.0;
     s.rotation_sigma = 1e-12;
     s.gyro.part_count = 1;
@@ -137,12 +137,12 @@ static void test_rotation(void **state)
     set3(s.gyro.part[0].sigma, 1e-5);
     filter = start_at_rest(&m, &s, 0.0);
     rest_for(filter, 1, 1e-5);
-    assert_true(imk_zero_velocity_update(filter));
-    imk_zero_velocity_get(filter, &end);
+    assert_true(imk_navigation_filter_stand(filter));
+    imk_navigation_filter_get(filter, &end);
     const double found = end.gyro_bias.v[2];
     CHECK_BELOW(5e-6, found);
     rest_for(filter, 20, 0.0);
-    imk_zero_velocity_get(filter, &end);
+    imk_navigation_filter_get(filter, &end);
     CHECK_RELATIVE(end.gyro_bias.v[2], found * exp(-2.0), 1e-9);
 }
 
@@ -153,19 +153,21 @@ static void test_velocity_noise(void **state)
     (void)state;
     static memory m;
     const double no = (double)INFINITY;
-    imk_zero_velocity_settings s;
-    imk_zero_velocity_default(&s);
+    imk_navigation_filter_settings s;
+    imk_navigation_filter_default(&s);
     s.hold_height = true;
     s.velocity_sigma = 1e-3;
+    s.aid_count = 1;
+    s.aid[0] = imk_aid_default(IMK_AID_POSITION);
     set3(s.accel.quantization, 0.05);
-    imk_zero_velocity *filter = start_at_rest(&m, &s, 0.05);
-    assert_true(imk_zero_velocity_update(filter));
-    CHECK_RELATIVE(imk_zero_velocity_counted(filter).chi_square, 25e-4 / (25e-4 + 1e-6), 1e-9);
-    imk_geodetic above = rest_place;
-    above.height = 1000.0;
-    assert_true(imk_zero_velocity_fix(filter, above, (imk_vector3){{no, no, 1.0}}));
-    assert_int_equal(imk_zero_velocity_counted(filter).accepted, 1);
-    assert_int_equal(imk_zero_velocity_counted(filter).refused, 0);
+    imk_navigation_filter *filter = start_at_rest(&m, &s, 0.05);
+    assert_true(imk_navigation_filter_stand(filter));
+    CHECK_RELATIVE(imk_navigation_filter_counted(filter).chi_square, 25e-4 / (25e-4 + 1e-6), 1e-9);
+    const imk_aid_reading above = {.time = 0.05,
+                                   .value = {rest_place.latitude, rest_place.longitude, 1000.0},
+                                   .sigma = {no, no, 1.0}};
+    assert_int_equal(imk_navigation_filter_aid(filter, 0, &above), IMK_AID_NOT_USED);
+    assert_int_equal(imk_navigation_filter_aided(filter, 0).refused, 0);
 }
 
 /* What a level unit at rest reads; of its attitude's uncertainty only the tilt turns gravity. */
@@ -176,14 +178,14 @@ static void test_rest(void **state)
     const imk_geodetic place = {0.6, -1.0, 200.0};
     const imk_matrix3 c = imk_matrix3_from_euler(0.1, -0.2, 1.0);
     const imk_navigation_state start = imk_navigation_state_ned(0.0, place, (imk_vector3){{0}}, c);
-    imk_zero_velocity_settings s;
-    imk_zero_velocity_default(&s);
+    imk_navigation_filter_settings s;
+    imk_navigation_filter_default(&s);
     const double sigma[3] = {1e-3, 2e-3, 0.1}, g = imk_normal_gravity(0.6, 200.0);
     memcpy(s.initial_sigma + 6, sigma, sizeof sigma);
     s.gyro.part_count = s.accel.part_count = 1;
     set3(s.gyro.part[0].sigma, 1e-5);
     set3(s.accel.part[0].sigma, 1e-2);
-    const imk_rest_readings rest = imk_zero_velocity_rest(start_filter(&m, &s, &start));
+    const imk_rest_readings rest = imk_navigation_filter_rest(start_filter(&m, &s, &start));
     const imk_vector3 rate = imk_matrix3_apply(imk_matrix3_transpose(c), imk_earth_rate(0.6));
     const imk_vector3 force =
         imk_matrix3_apply(imk_matrix3_transpose(c), (imk_vector3){{0.0, 0.0, -g}});
@@ -202,22 +204,22 @@ static void test_coriolis(void **state)
     (void)state;
     static memory m[2];
     const imk_geodetic place = {1.0, 0.2, 0.0};
-    imk_zero_velocity_settings s;
-    imk_zero_velocity_default(&s);
+    imk_navigation_filter_settings s;
+    imk_navigation_filter_default(&s);
     s.hold_height = true;
     s.initial_sigma[3] = 1.0;
-    imk_zero_velocity *filter[2];
+    imk_navigation_filter *filter[2];
     const imk_vector3 rate = imk_earth_rate(place.latitude);
     const imk_vector3 up = {{0.0, 0.0, -imk_normal_gravity(place.latitude, 0.0)}};
-    imk_zero_velocity_estimate end[2];
+    imk_navigation_filter_estimate end[2];
     for (int k = 0; k < 2; k++) {
         const imk_navigation_state start = imk_navigation_state_ned(
             0.0, place, (imk_vector3){{(double)k, 0.0, 0.0}}, imk_matrix3_identity());
         filter[k] = start_filter(&m[k], &s, &start);
         for (int step = 0; step < 1200; step++)
-            imk_zero_velocity_step(filter[k], 0.5, imk_vector3_scale(rate, 0.5),
-                                   imk_vector3_scale(up, 0.5));
-        imk_zero_velocity_get(filter[k], &end[k]);
+            imk_navigation_filter_step(filter[k], 0.5, imk_vector3_scale(rate, 0.5),
+                                       imk_vector3_scale(up, 0.5));
+        imk_navigation_filter_get(filter[k], &end[k]);
     }
     const imk_vector3 off = imk_navigation_difference_ned(&end[1].state, &end[0].state);
     /* 600 s are 0.13 of Schuler's period; second order of 1 m/s is nothing. */
@@ -234,19 +236,20 @@ static void test_short_correlation(void **state)
     static memory m;
     static const double times[] = {1.0, 3.0, 30.0}; /* T [s] */
     for (int k = 0; k < 3; k++) {
-        imk_zero_velocity_settings s;
-        imk_zero_velocity_default(&s);
+        imk_navigation_filter_settings s;
+        imk_navigation_filter_default(&s);
         s.step = 1.0;
         s.accel.part_count = 1;
         s.accel.part[0].correlation_time = times[k];
         set3(s.accel.part[0].sigma, 1e-3);
         const imk_navigation_state start = imk_navigation_state_ned(
             0.0, (imk_geodetic){0.5, 0.0, 0.0}, (imk_vector3){{0}}, imk_matrix3_identity());
-        imk_zero_velocity *filter = start_filter(&m, &s, &start);
-        imk_zero_velocity_estimate end;
+        imk_navigation_filter *filter = start_filter(&m, &s, &start);
+        imk_navigation_filter_estimate end;
         for (int step = 0; step < 20; step++)
-            imk_zero_velocity_step(filter, 1.0, (imk_vector3){{0}}, (imk_vector3){{0, 0, -9.79}});
-        imk_zero_velocity_get(filter, &end);
+            imk_navigation_filter_step(filter, 1.0, (imk_vector3){{0}},
+                                       (imk_vector3){{0, 0, -9.79}});
+        imk_navigation_filter_get(filter, &end);
         const double t = 20.0, tau = times[k];
         const double variance = 2e-6 * tau * (t - tau * (1.0 - exp(-t / tau)));
         CHECK_RELATIVE(end.covariance[3][3], variance, 1.5 / (12.0 * tau * tau) + 0.02);

@@ -1,106 +1,61 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The zero-velocity filter: its memory and start, and a sample's way through the mechanisation.
- */
-#include "zero_velocity_internal.h"
+/* The navigation filter: its memory and start, and a sample's way through the mechanisation. */
+#include "navigation_filter_internal.h"
 
-#include "base/refuse_internal.h"
 #include "base/workspace_internal.h"
+
+#include "imukit/distributions.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { COOKIE = 0x5A0FEED1, ERRORS = IMK_NAVIGATION_ERRORS };
+enum { ERRORS = IMK_NAVIGATION_ERRORS };
 
-void imk_zero_velocity_default(imk_zero_velocity_settings *settings)
+/* The errors of aids among the states. @param places,state  of each aid, and all; or NULL both */
+static size_t aid_states(const imk_navigation_filter_settings *settings, size_t first,
+                         imki_aid_places *places, imki_aid_state *state)
 {
-    memset(settings, 0, sizeof *settings);
-    settings->cookie = COOKIE;
-    settings->samples = 3;
-    settings->step = 0.5;
-    settings->velocity_sigma = 0.01;
-    settings->false_alarm = 1e-4;
+    const size_t aids = settings->aid_count < IMK_AIDS_MAX ? settings->aid_count : IMK_AIDS_MAX;
+    size_t count = 0;
+    for (size_t k = 0; k < aids; k++) {
+        const imk_aid *aid = &settings->aid[k];
+        const double *correlated = aid->correlated_sigma, *arm = aid->lever_arm_sigma;
+        size_t shared = k;
+        for (size_t i = k; i-- > 0;)
+            if (memcmp(settings->aid[i].lever_arm, aid->lever_arm, sizeof aid->lever_arm) == 0 &&
+                memcmp(settings->aid[i].lever_arm_sigma, arm, sizeof aid->lever_arm_sigma) == 0)
+                shared = i;
+        const bool has_arm = arm[0] > 0.0 || arm[1] > 0.0 || arm[2] > 0.0;
+        const bool has_correlated =
+            correlated[0] > 0.0 || correlated[1] > 0.0 || correlated[2] > 0.0;
+        for (int i = 0; i < 3 && has_correlated; i++, count++) {
+            if (places && i == 0)
+                places[k].correlated = first + count;
+            if (state)
+                state[count] = (imki_aid_state){aid->correlation_time, correlated[i], 0.0};
+        }
+        if (places && has_arm && shared < k)
+            places[k].lever_arm = places[shared].lever_arm;
+        for (int i = 0; i < 3 && has_arm && shared == k; i++, count++) {
+            if (places && i == 0)
+                places[k].lever_arm = first + count;
+            if (state)
+                state[count] = (imki_aid_state){0.0, arm[i], 0.0};
+        }
+    }
+    return count;
 }
 
-static size_t state_count(const imk_zero_velocity_settings *settings)
+static size_t own_states(const imk_navigation_filter_settings *settings)
 {
     return ERRORS + 3 * (settings->gyro.part_count + settings->accel.part_count);
 }
 
-size_t imk_zero_velocity_size(const imk_zero_velocity_settings *settings)
+size_t imk_navigation_filter_size(const imk_navigation_filter_settings *settings)
 {
-    const size_t n = state_count(settings);
-    return sizeof(imk_zero_velocity) + (2 * n * n + 3 * n) * sizeof(double) + IMKI_ALIGNMENT_SLACK;
-}
-
-static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
-{
-    const imk_status status = fabs(value) <= 1.7e308 ? IMK_ERROR_RANGE : IMK_ERROR_NOT_FINITE;
-    return imki_refuse(error, status, field, value, 0.0, expected);
-}
-
-/* Finite and not negative, and not too large to be squared. */
-static bool is_size(double value)
-{
-    return value >= 0.0 && value <= 1e100;
-}
-
-static imk_status check_triad(const imk_triad_errors *triad, const char *field, imk_error *error)
-{
-    if (triad->part_count > IMK_BIAS_PARTS_MAX)
-        return refuse(error, field, (double)triad->part_count, "at most 13 parts of a bias");
-    for (int i = 0; i < 3; i++) {
-        if (!is_size(triad->white[i]))
-            return refuse(error, field, triad->white[i], "a white noise of 0 or more");
-        if (!is_size(triad->quantization[i]))
-            return refuse(error, field, triad->quantization[i], "a quantization of 0 or more");
-        for (size_t p = 0; p < triad->part_count; p++) {
-            const imk_bias_part *part = &triad->part[p];
-            if (!is_size(part->sigma[i]) || !is_size(part->walk[i]))
-                return refuse(error, field,
-                              is_size(part->sigma[i]) ? part->walk[i] : part->sigma[i],
-                              "a sigma or random walk of 0 or more");
-            if (!is_size(part->correlation_time))
-                return refuse(error, field, part->correlation_time, "a time of 0 or more");
-        }
-    }
-    return IMK_OK;
-}
-
-static imk_status check(const imk_zero_velocity_settings *s, imk_error *error)
-{
-    if (s->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "zero_velocity", "",
-                             "start from imk_zero_velocity_default()");
-    imk_status status = check_triad(&s->gyro, "gyro", error);
-    if (status == IMK_OK)
-        status = check_triad(&s->accel, "accel", error);
-    if (status != IMK_OK)
-        return status;
-    if (!(s->samples >= 1 && s->samples <= 4))
-        return refuse(error, "samples", s->samples, "1 to 4 samples");
-    if (!(s->step >= 1e-3 && s->step <= 10.0))
-        return refuse(error, "step", s->step, "a time between 1 ms and 10 s");
-    if (!(s->velocity_sigma > 0.0 && s->velocity_sigma <= 1e6))
-        return refuse(error, "velocity_sigma", s->velocity_sigma, "a positive velocity");
-    if (!is_size(s->rotation_sigma))
-        return refuse(error, "rotation_sigma", s->rotation_sigma, "a rate of 0 or more");
-    if (!(s->false_alarm >= 1e-12 && s->false_alarm < 0.5))
-        return refuse(error, "false_alarm", s->false_alarm, "a probability from 1e-12 to 0.5");
-    if (!is_size(s->alignment_time))
-        return refuse(error, "alignment_time", s->alignment_time, "a time of 0 or more");
-    for (int i = 0; i < ERRORS; i++)
-        if (!is_size(s->initial_sigma[i]))
-            return refuse(error, "initial_sigma", s->initial_sigma[i], "a sigma of 0 or more");
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            if (!(fabs(s->attitude_covariance[i][j]) <= 1e6))
-                return refuse(error, "attitude_covariance", s->attitude_covariance[i][j],
-                              "a covariance");
-        for (int j = 0; j < 6; j++)
-            if (!(fabs(s->alignment[i][j]) <= 1e100))
-                return refuse(error, "alignment", s->alignment[i][j], "a finite number");
-    }
-    return IMK_OK;
+    const size_t n = own_states(settings) + aid_states(settings, 0, NULL, NULL);
+    return sizeof(imk_navigation_filter) + (2 * n * n + 9 * n) * sizeof(double) +
+           IMKI_ALIGNMENT_SLACK;
 }
 
 static imk_matrix3 axes_at(const imk_navigation_state *state)
@@ -110,7 +65,8 @@ static imk_matrix3 axes_at(const imk_navigation_state *state)
 }
 
 /* A block of nine navigation errors, north-east-down, into Earth-fixed axes. */
-static void put_block(imk_zero_velocity *f, const imk_matrix3 *axes, size_t block, double ned[3][3])
+static void put_block(imk_navigation_filter *f, const imk_matrix3 *axes, size_t block,
+                      double ned[3][3])
 {
     for (size_t i = 0; i < 3; i++)
         for (size_t j = 0; j < 3; j++) {
@@ -122,9 +78,9 @@ static void put_block(imk_zero_velocity *f, const imk_matrix3 *axes, size_t bloc
         }
 }
 
-static void start_covariance(imk_zero_velocity *f)
+static void start_covariance(imk_navigation_filter *f)
 {
-    const imk_zero_velocity_settings *s = &f->settings;
+    const imk_navigation_filter_settings *s = &f->settings;
     const imk_triad_errors *triad[2] = {&s->gyro, &s->accel};
     const imk_matrix3 axes = axes_at(&f->strapdown.state);
     const size_t n = f->states;
@@ -152,6 +108,8 @@ static void start_covariance(imk_zero_velocity *f)
                         earth[i];
             }
     put_block(f, &axes, 6, tilt);
+    for (size_t k = 0; k < f->aid_states; k++, state++)
+        f->covariance[state * n + state] = f->aid_state[k].sigma * f->aid_state[k].sigma;
     for (size_t block = 0; block < 6; block += 3) {
         double ned[3][3] = {{0}};
         const int known = s->hold_height ? 2 : 3;
@@ -161,53 +119,69 @@ static void start_covariance(imk_zero_velocity *f)
     }
 }
 
-imk_status imk_zero_velocity_start(const imk_zero_velocity_settings *settings,
-                                   const imk_navigation_state *start, imk_zero_velocity **filter,
-                                   void *memory, size_t memory_size, imk_error *error)
+imk_status imk_navigation_filter_start(const imk_navigation_filter_settings *settings,
+                                       const imk_navigation_state *start,
+                                       imk_navigation_filter **filter, void *memory,
+                                       size_t memory_size, imk_error *error)
 {
-    const imk_status status = check(settings, error);
+    const imk_status status = imki_navigation_filter_check(settings, error);
     if (status != IMK_OK)
         return status;
-    const size_t need = imk_zero_velocity_size(settings);
+    const size_t need = imk_navigation_filter_size(settings);
     if (!memory || memory_size < need)
-        return imk_error_set(error, IMK_ERROR_WORKSPACE, "zero_velocity", "",
-                             "provide imk_zero_velocity_size() bytes");
-    imk_zero_velocity *f = (void *)imki_align(memory);
+        return imk_error_set(error, IMK_ERROR_WORKSPACE, "navigation_filter", "",
+                             "provide imk_navigation_filter_size() bytes");
+    imk_navigation_filter *f = (void *)imki_align(memory);
     memset(f, 0, need - IMKI_ALIGNMENT_SLACK);
     f->settings = *settings;
-    f->states = state_count(settings);
+    f->first_aid_state = own_states(settings);
+    f->aid_states = aid_states(settings, f->first_aid_state, f->aid_places, f->aid_state);
+    f->states = f->first_aid_state + f->aid_states;
     f->covariance = (double *)(void *)(f + 1);
     f->scratch = f->covariance + f->states * f->states;
     f->cross = f->scratch + f->states * f->states;
+    f->h = f->cross + 3 * f->states;
+    f->gain = f->h + 3 * f->states;
     f->parts[IMKI_GYRO_PART] = settings->gyro.part_count;
     f->parts[IMKI_ACCEL_PART] = settings->accel.part_count;
     f->strapdown = imk_strapdown_start(start);
     f->strapdown.hold_height = settings->hold_height;
     f->strapdown.samples = settings->samples;
     f->attitude = imk_quaternion_to_matrix(f->strapdown.state.attitude);
-    f->counts.first_refused = (double)NAN;
+    f->last.before = f->last.after = f->strapdown.state;
+    for (int k = 0; k <= IMK_AIDS_MAX; k++)
+        f->counts[k].first_refused = f->counts[k].first_recovered = (double)NAN;
+    for (int rows = 1; rows <= 3; rows++)
+        f->limit[rows - 1] = imk_chi_square_quantile(1.0 - settings->false_alarm, rows);
     start_covariance(f);
     *filter = f;
     return IMK_OK;
 }
 
-void imk_zero_velocity_step(imk_zero_velocity *f, double dt, imk_vector3 angle,
-                            imk_vector3 velocity)
+void imk_navigation_filter_step(imk_navigation_filter *f, double dt, imk_vector3 angle,
+                                imk_vector3 velocity)
 {
     const imk_vector3 *gyro = &f->bias_sum[IMKI_GYRO_PART], *accel = &f->bias_sum[IMKI_ACCEL_PART];
     for (int i = 0; i < 3; i++) {
         angle.v[i] -= gyro->v[i] * dt;
         velocity.v[i] -= accel->v[i] * dt;
     }
+    f->last.dt = dt;
+    f->last.before = f->strapdown.state;
     imk_strapdown_step(&f->strapdown, dt, angle, velocity);
+    f->last.after = f->strapdown.state;
+    f->last.rate = imk_vector3_scale(angle, 1.0 / dt);
     const imk_matrix3 now = imk_quaternion_to_matrix(f->strapdown.state.attitude);
+    imk_vector3 turned = {{0}};
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             const double middle = 0.5 * (f->attitude.m[i][j] + now.m[i][j]);
             f->turned.m[i][j] += middle * dt;
             f->stand_attitude.m[i][j] += middle * dt;
-            f->force.v[i] += middle * velocity.v[j];
+            turned.v[i] += middle * velocity.v[j];
         }
+    f->last.force = imk_vector3_scale(turned, 1.0 / dt);
+    f->force = imk_vector3_add(f->force, turned);
     for (int i = 0; i < 3; i++)
         f->stand_turn.v[i] += angle.v[i] - IMK_EARTH_RATE * dt * now.m[2][i];
     f->attitude = now;
@@ -215,31 +189,59 @@ void imk_zero_velocity_step(imk_zero_velocity *f, double dt, imk_vector3 angle,
     f->span += dt;
     /* An interval short of the step by rounding is not continued. */
     if (f->span > f->settings.step - 0.5 * dt)
-        imki_zero_velocity_propagate(f);
+        imki_navigation_filter_propagate(f);
 }
 
-void imk_zero_velocity_moved(imk_zero_velocity *filter)
+void imk_navigation_filter_moved(imk_navigation_filter *filter)
 {
     /* Noise in the covariance is counted from here too. */
-    imki_zero_velocity_propagate(filter);
+    imki_navigation_filter_propagate(filter);
     filter->stand = 0.0;
     filter->stand_turn = (imk_vector3){{0}};
     memset(&filter->stand_attitude, 0, sizeof filter->stand_attitude);
     memset(filter->cross, 0, 3 * filter->states * sizeof *filter->cross);
 }
 
-imk_navigation_state imk_zero_velocity_state(const imk_zero_velocity *filter)
+imk_navigation_state imk_navigation_filter_state(const imk_navigation_filter *filter)
 {
     return filter->strapdown.state;
 }
 
-imk_zero_velocity_counts imk_zero_velocity_counted(const imk_zero_velocity *filter)
+imk_navigation_filter_counts imk_navigation_filter_counted(const imk_navigation_filter *filter)
 {
-    return filter->counts;
+    return filter->counts[IMK_AIDS_MAX];
+}
+
+imk_navigation_filter_counts imk_navigation_filter_aided(const imk_navigation_filter *filter,
+                                                         size_t aid)
+{
+    return filter->counts[aid < IMK_AIDS_MAX ? aid : IMK_AIDS_MAX];
+}
+
+double imk_navigation_filter_correlation(const imk_navigation_filter_counts *c)
+{
+    return c->pairs > 0 ? c->pair_sum / (double)c->pairs * (double)c->degrees / c->chi_square
+                        : (double)NAN;
+}
+
+imk_innovation imk_navigation_filter_innovation(const imk_navigation_filter *filter)
+{
+    return filter->innovation;
+}
+
+imki_filter_gain imki_navigation_filter_gain(const imk_navigation_filter *f)
+{
+    return (imki_filter_gain){f->states, f->rows, f->h, f->gain};
+}
+
+const double *imki_navigation_filter_covariance(imk_navigation_filter *f)
+{
+    imki_navigation_filter_propagate(f);
+    return f->covariance;
 }
 
 /* Trace of the covariance of a sensor's biases, sums of their parts. */
-static double bias_variance(const imk_zero_velocity *f, int sensor)
+static double bias_variance(const imk_navigation_filter *f, int sensor)
 {
     const size_t n = f->states, parts = f->parts[sensor];
     const size_t first = ERRORS + (sensor == IMKI_GYRO_PART ? 0 : 3 * f->parts[IMKI_GYRO_PART]);
@@ -252,7 +254,7 @@ static double bias_variance(const imk_zero_velocity *f, int sensor)
 }
 
 /* An attitude error turns gravity by at most g times itself. */
-imk_rest_readings imk_zero_velocity_rest(const imk_zero_velocity *f)
+imk_rest_readings imk_navigation_filter_rest(const imk_navigation_filter *f)
 {
     const imk_vector3 gravity = imk_gravity_ecef(f->strapdown.state.position);
     const double g2 = imk_vector3_dot(gravity, gravity);
@@ -271,9 +273,21 @@ imk_rest_readings imk_zero_velocity_rest(const imk_zero_velocity *f)
     return rest;
 }
 
-void imk_zero_velocity_get(imk_zero_velocity *f, imk_zero_velocity_estimate *estimate)
+/* Attitude errors psi to those of what is displayed, phi = psi - turn dr: rows, then columns. */
+static void display_attitude(imk_vector3 position, double p[ERRORS][ERRORS])
 {
-    imki_zero_velocity_propagate(f);
+    const imk_matrix3 turn = imk_level_turn(imk_geodetic_from_ecef(position));
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < ERRORS; j++)
+            p[6 + i][j] -= turn.m[i][0] * p[0][j] + turn.m[i][1] * p[1][j];
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < ERRORS; j++)
+            p[j][6 + i] -= turn.m[i][0] * p[j][0] + turn.m[i][1] * p[j][1];
+}
+
+void imk_navigation_filter_get(imk_navigation_filter *f, imk_navigation_filter_estimate *estimate)
+{
+    imki_navigation_filter_propagate(f);
     const imk_matrix3 axes = axes_at(&f->strapdown.state);
     const size_t n = f->states;
     estimate->state = f->strapdown.state;
@@ -287,6 +301,7 @@ void imk_zero_velocity_get(imk_zero_velocity *f, imk_zero_velocity_estimate *est
                             sum += axes.m[k][i] * f->covariance[(a + k) * n + b + l] * axes.m[l][j];
                     estimate->covariance[a + i][b + j] = sum;
                 }
+    display_attitude(f->strapdown.state.position, estimate->covariance);
     estimate->gyro_bias = f->bias_sum[IMKI_GYRO_PART];
     estimate->accel_bias = f->bias_sum[IMKI_ACCEL_PART];
     imk_vector3 *sigma[2] = {&estimate->gyro_bias_sigma, &estimate->accel_bias_sigma};
