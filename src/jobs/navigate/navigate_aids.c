@@ -205,7 +205,8 @@ static void tell(imk_navigate_log *n, const imk_navigate_aid *a)
             n, level, "aid_refused", name,
             IMKI_NUMBERS(refused, tried, n->first_time + c->first_refused - n->record.dt));
     if (c->recovered > 0)
-        imki_aid_find(n, level, "aid_recovered", name,
+        imki_aid_find(
+            n, level, "aid_recovered", name,
             IMKI_NUMBERS((double)c->recovered, n->first_time + c->first_recovered - n->record.dt));
     if (c->refused_in_row >= REFUSED_MAX)
         imki_aid_find(n, level, "aid_lost", name, IMKI_NUMBERS((double)c->refused_in_row));
