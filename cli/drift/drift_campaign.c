@@ -12,12 +12,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The last, of an aided navigator, is e^T P^-1 e of 7 or 9 errors. */
-static const char *const state_names[2][IMK_DRIFT_AIDED_STATES] = {
-    {"position_north", "position_east", "position_down", "velocity_north", "velocity_east",
-     "velocity_down", "attitude_north", "attitude_east", "attitude_down", "nees_9"},
-    {"position_north", "position_east", "position_down", "velocity_north", "velocity_east",
-     "velocity_down", "attitude_north", "attitude_east", "attitude_down", "nees_7"}};
+/* By imk_attitude_errors: so a file says which attitude its errors are of, and one from before
+ * there was a choice is read as what it holds. The last, of an aided navigator, is e^T P^-1 e of 7
+ * or 9 errors. */
+#define FIRST_STATES                                                                               \
+    "position_north", "position_east", "position_down", "velocity_north", "velocity_east",         \
+        "velocity_down"
+#define DISPLAYED_STATES FIRST_STATES, "displayed_north", "displayed_east", "displayed_down"
+#define EARTH_STATES FIRST_STATES, "attitude_north", "attitude_east", "attitude_down"
+static const char *const state_names[2][2][IMK_DRIFT_AIDED_STATES] = {
+    {{DISPLAYED_STATES, "nees_9"}, {DISPLAYED_STATES, "nees_7"}},
+    {{EARTH_STATES, "nees_9"}, {EARTH_STATES, "nees_7"}}};
 static const char *const state_units[IMK_DRIFT_AIDED_STATES] = {"m",   "m",   "m",   "m/s", "m/s",
                                                                 "m/s", "rad", "rad", "rad", "1"};
 
@@ -135,7 +140,7 @@ int drift_runs(const drift_options *o, const drift_scene *scene, imk_drift_model
                              .time_count = scene->times.row_count,
                              .time = time,
                              .state_count = degrees > 0 ? IMK_DRIFT_AIDED_STATES : IMK_DRIFT_STATES,
-                             .state = state_names[degrees == 7],
+                             .state = state_names[c.settings.attitude_errors][degrees == 7],
                              .unit = state_units};
     const int code = run_campaign(o, r, &c, &campaign);
     free(time);
@@ -146,20 +151,28 @@ int drift_runs(const drift_options *o, const drift_scene *scene, imk_drift_model
 /* ---- a results file ---- */
 
 /* Are the states those of runs, with `degrees` of what is normalised? */
-static bool has_states(const imk_campaign *c, int degrees)
+static bool has_states(const imk_campaign *c, imk_attitude_errors stated, int degrees)
 {
     const size_t count = degrees > 0 ? IMK_DRIFT_AIDED_STATES : IMK_DRIFT_STATES;
     bool same = c->state_count == count;
     for (size_t i = 0; same && i < count; i++)
-        same = strcmp(c->state[i], state_names[degrees == 7][i]) == 0;
+        same = strcmp(c->state[i], state_names[stated][degrees == 7][i]) == 0;
     return same;
+}
+
+static imk_attitude_errors stated_in(const imk_campaign *c)
+{
+    return strcmp(c->state[6], state_names[IMK_ATTITUDE_EARTH][0][6]) == 0 ? IMK_ATTITUDE_EARTH
+                                                                           : IMK_ATTITUDE_LOCAL;
 }
 
 static int check_results(const imk_campaign_results *results, const char *path, int *degrees)
 {
     const imk_campaign *c = &results->campaign;
-    *degrees = has_states(c, 9) ? 9 : has_states(c, 7) ? 7 : 0;
-    return results->runs > 0 && has_states(c, *degrees)
+    const bool wide = c->state_count >= IMK_DRIFT_STATES;
+    const imk_attitude_errors stated = wide ? stated_in(c) : IMK_ATTITUDE_LOCAL;
+    *degrees = has_states(c, stated, 9) ? 9 : has_states(c, stated, 7) ? 7 : 0;
+    return results->runs > 0 && has_states(c, stated, *degrees)
                ? -1
                : command_failed("%s: the results of another kind of campaign, not of imukit drift",
                                 path);
@@ -188,6 +201,8 @@ static void show_inputs(const imk_campaign_results *file, const char *path, imk_
     imk_result_count(result, "runs", (long long)c->run_count);
     imk_result_count(result, "first", (long long)file->run[0]);
     imk_result_count(result, "count", (long long)file->runs);
+    imk_result_text(result, "attitude_errors",
+                    stated_in(c) == IMK_ATTITUDE_EARTH ? "earth" : "local");
     (void)imk_result_json(result, "parameters", c->parameters);
     imk_result_end(result);
 }
@@ -208,8 +223,11 @@ static int show(const imk_drift_models *r, const imk_campaign_results *file, con
         list_add(&words, " of %llu runs, from run %llu on", whole, first);
     else
         list_add(&words, " runs");
-    list_add(&words, ", seed %llu, imukit %s. In brackets 95 %% intervals.",
-             (unsigned long long)c->seed, c->version);
+    list_add(&words, ", seed %llu, imukit %s.%s In brackets 95 %% intervals.",
+             (unsigned long long)c->seed, c->version,
+             stated_in(c) == IMK_ATTITUDE_EARTH
+                 ? " The heading is that against Earth-fixed axes, not the displayed one."
+                 : "");
     imk_show_drift_runs(r, words.text, result);
     list_free(&words);
     imk_result_for(result, IMK_FOR_TERMINAL);

@@ -90,6 +90,7 @@ static void put_physics(const imk_model *model, imk_result *result)
     bare->name[0] = bare->description[0] = bare->residual_of[0] = '\0';
     forget(&bare->gyro_evidence);
     forget(&bare->accel_evidence);
+    bare->gyro.stated_zero = bare->accel.stated_zero = bare->mag.stated_zero = 0;
     bare->gyro.noise.density = bare->accel.noise.density = IMK_DENSITY_TWO_SIDED;
     if (command_unless_memory(imk_model_print_json(bare, NULL, &text, &size, NULL)) == IMK_OK)
         (void)imk_result_json(result, "model", text);
@@ -122,6 +123,12 @@ static void put_settings(const imk_drift_settings *s, imk_result *result)
     imk_result_text(result, "aligned", s->alignment == IMK_ALIGNED_SELF ? "self" : "given");
     if (s->alignment == IMK_ALIGNED_SELF)
         put_number("alignment time [s]", s->alignment_time, result);
+    imk_result_text(result, "attitude errors",
+                    s->attitude_errors == IMK_ATTITUDE_EARTH ? "earth" : "local");
+    if (s->gravity_deflection > 0) {
+        put_number("gravity deflection [m/s^2]", s->gravity_deflection, result);
+        put_number("gravity distance [m]", s->gravity_distance, result);
+    }
     imk_result_flag(result, "compensated", s->compensated);
     imk_result_array(result, "initial sigma [m, m/s, rad]");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)

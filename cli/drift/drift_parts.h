@@ -13,8 +13,9 @@
 
 typedef struct drift_options {
     double duration, rate, align_time, latitude, height, roll, pitch, yaw;
+    double deflection, deflection_distance;
     option_integer monte_carlo, seed, threads;
-    int aligned, vertical; /* in the order of the choices */
+    int aligned, vertical, attitude_errors, assume_class; /* in the order of the choices */
     bool compensated, json;
     const char *times, *motion, *initial_position, *initial_velocity, *initial_attitude;
     const char *want, *shard, *output, *plot, *report;

@@ -75,6 +75,23 @@ static int read_initial(const char *name, const char *text, const char *unit, do
     return -1;
 }
 
+static int read_gravity(const drift_options *o, imk_drift_settings *s)
+{
+    if (!(o->deflection >= 0 && o->deflection <= 0.1))
+        return command_misused("--gravity-deflection %g m/s^2: expected 0 to 0.1 m/s^2",
+                               o->deflection);
+    if (!isnan(o->deflection_distance) && o->deflection == 0)
+        return command_misused("--gravity-distance is for --gravity-deflection; add that option");
+    if (!isnan(o->deflection_distance) &&
+        !(o->deflection_distance > 0 && o->deflection_distance <= 1e9))
+        return command_misused("--gravity-distance %g m: expected a length up to 1e9 m",
+                               o->deflection_distance);
+    s->gravity_deflection = o->deflection;
+    if (!isnan(o->deflection_distance))
+        s->gravity_distance = o->deflection_distance;
+    return -1;
+}
+
 static int read_start(const drift_options *o, imk_drift_settings *s)
 {
     if (o->aligned == 1 && o->initial_attitude)
@@ -93,6 +110,7 @@ static int read_start(const drift_options *o, imk_drift_settings *s)
     if (!isnan(o->align_time))
         s->alignment_time = o->align_time;
     s->vertical = o->vertical == 1 ? IMK_VERTICAL_FREE : IMK_VERTICAL_SLAVED;
+    s->attitude_errors = o->attitude_errors == 1 ? IMK_ATTITUDE_EARTH : IMK_ATTITUDE_LOCAL;
     return code;
 }
 
@@ -126,12 +144,20 @@ static double motion_length(const drift_scene *s)
     return s->motion ? imk_motion_file_duration(s->motion) : (double)INFINITY;
 }
 
+/* The last row that is not past the end, whatever the rounding of its time. */
+static double last_row(double length, double rate)
+{
+    return floor(length * rate + 1e-6) / rate;
+}
+
 static int choose_duration(const drift_options *o, const drift_scene *s, double *duration)
 {
     const double length = motion_length(s);
     *duration = o->duration;
     if (isnan(*duration))
-        *duration = s->want.asked && !o->times ? s->want.time : isinf(length) ? day : length;
+        *duration = s->want.asked && !o->times ? s->want.time
+                    : isinf(length)            ? day
+                                               : last_row(length, s->settings.rate);
     if (!(*duration > 0))
         return command_misused("--duration must be positive");
     if (*duration > 1e8)
@@ -208,6 +234,8 @@ int drift_scene_open(const drift_options *o, drift_scene *s)
     int code = o->want ? drift_want_parse(o->want, &s->want, &s->want_after) : -1;
     if (code < 0)
         code = read_start(o, settings);
+    if (code < 0)
+        code = read_gravity(o, settings);
     if (code < 0)
         code = drift_aids_open(o, s);
     if (code < 0 && o->motion)

@@ -36,9 +36,20 @@ static const option navigation_option_table[] = {
     {"vertical", OPTION_CHOICE, AT(vertical), .value = "HOW", .choices = "slaved|free",
      .help = "slaved (the default): height follows the truth, as with a barometer; free: it grows "
              "without bound"},
+    {"attitude-errors", OPTION_CHOICE, AT(attitude_errors), .value = "WHICH",
+     .choices = "local|earth",
+     .help = "local (the default): of what is displayed, tilt and heading relative to the local "
+             "level at the computed position (beyond 89 deg of latitude the grid heading); earth: "
+             "against Earth-fixed axes; --initial-attitude is meant in the same way"},
+    {"gravity-deflection", OPTION_QUANTITY, AT(deflection), .value = "SIGMA", .unit = "m/s^2",
+     .help = "1 sigma of what gravity has beside normal gravity, north and east each, such as "
+             "\"30 ug\"; default 0"},
+    {"gravity-distance", OPTION_QUANTITY, AT(deflection_distance), .value = "LENGTH", .unit = "m",
+     .help = "its correlation distance along the ground; default 20km"},
     {"compensated", OPTION_FLAG, AT(compensated),
      .help = "show also the figures after calibration: known values of the model are taken out, "
              "and their uncertainty stays"},
+    ASSUME_CLASS_OPTION(AT(assume_class)),
     {"want", OPTION_TEXT, AT(want), .value = "REQUIREMENT",
      .help = "the inverse question, such as \"CEP 1 nmi @ 1h\": how small each term must be, and "
              "which devices meet this; also R95, DRMS, height, velocity, tilt, heading; with --aid "
@@ -142,6 +153,7 @@ typedef struct work {
     const drift_options *o;
     size_t count;
     imk_model *model[IMK_DRIFT_MODELS_MAX];
+    imk_unstated assumed[IMK_DRIFT_MODELS_MAX];
     const char *name[IMK_DRIFT_MODELS_MAX + 1];
     drift_scene scene;
     imk_drift_models *r;
@@ -154,15 +166,18 @@ static int open_models(work *w)
         w->model[m] = command_memory(NULL, sizeof *w->model[m]);
         w->count = m + 1;
         code = command_model(w->name[m], w->model[m], NULL);
+        if (code < 0)
+            code = term_selection_apply(&w->o->terms, w->model[m]);
+        if (code < 0 && w->o->assume_class)
+            imk_model_assume_class(w->model[m], options_assumed_class(w->o->assume_class),
+                                   &w->assumed[m]);
         const int added = code < 0 ? imk_model_complete(w->model[m]) : -1;
         if (added >= 0)
             command_note(
                 "%s has no %s: perfect ones are taken, so that all errors are those of its "
-                "%s",
+                "%s; imukit join %s MODEL -o UNIT.yaml adds those of another model",
                 w->name[m], added == IMK_GYRO ? "gyros" : "accelerometers",
-                added == IMK_GYRO ? "accelerometers" : "gyros");
-        if (code < 0)
-            code = term_selection_apply(&w->o->terms, w->model[m]);
+                added == IMK_GYRO ? "accelerometers" : "gyros", w->name[m]);
     }
     return code;
 }
@@ -210,7 +225,8 @@ static int show(const work *w)
     const imk_drift_models *r = w->r;
     imk_result *result = show_begin("drift"), *model = r->answer ? model_data(w) : NULL;
     const imk_drift_shown shown = {w->scene.motion ? o->motion : NULL, o->seed.value,
-                                   imk_drift_verdict(r, result), model, o->filter_model};
+                                   imk_drift_verdict(r, result), model,
+                                   o->assume_class ? w->assumed : NULL, o->filter_model};
     for (size_t i = 0; i < shown.verdict.count; i++)
         command_warn(shown.verdict.message[i].code, "%s", shown.verdict.message[i].text);
     const int code = o->output && !r->found ? drift_write_csv(r, o->output) : -1;
@@ -263,6 +279,8 @@ static int drift(work *w)
     settings.drift = scene->settings;
     settings.calibrated = o->compensated;
     settings.want = scene->want;
+    settings.assume = o->assume_class > 0;
+    settings.assumed_class = options_assumed_class(o->assume_class);
     settings.want.retuned = o->gains == 1;
     for (size_t m = 0; m < w->count; m++)
         models[m] = w->model[m];
@@ -287,6 +305,7 @@ static int run(int count, char **words)
                        .rate = missing,
                        .align_time = missing,
                        .latitude = missing,
+                       .deflection_distance = missing,
                        .seed = {.value = 1}};
     work w = {.o = &o};
     int code = options_parse(&drift_verb, count, words, &o, w.name);

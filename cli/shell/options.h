@@ -4,6 +4,7 @@
 #ifndef IMUKIT_OPTIONS_H
 #define IMUKIT_OPTIONS_H
 
+#include "imukit/model.h"
 #include "imukit/units.h"
 
 #include <stdbool.h>
@@ -81,6 +82,20 @@ typedef struct example {
     {                                                                                              \
         "report", OPTION_OUTPUT, at, .value = "FILE.html", .help = text                            \
     }
+/* What a model does not state; 0: it stays unstated. */
+#define ASSUME_CLASS_OPTION(at)                                                                    \
+    {                                                                                              \
+        "assume-class", OPTION_CHOICE, at,                                                         \
+            .value = "CLASS", .choices = "none|own|strategic|navigation|tactical|AHRS|control",    \
+            .help =                                                                                \
+                "take typical values of a class for the terms that a model does not state, and "   \
+                "name each; own: of the class that fits what it states; default none"              \
+    }
+/* The class of such a choice above 0; IMK_GRADE_NONE: the model's own. */
+static inline imk_grade options_assumed_class(int choice)
+{
+    return choice > 1 ? (imk_grade)(choice - 2) : IMK_GRADE_NONE;
+}
 #define JSON_OPTION(at, text)                                                                      \
     {                                                                                              \
         "json", OPTION_FLAG, at, .help = text                                                      \

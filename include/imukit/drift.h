@@ -10,8 +10,8 @@
  *
  *      0-2  position, north, east, down [m]
  *      3-5  velocity, north, east, down [m/s]
- *      6-8  attitude [rad], rotation vector about north, east, down: C_nb (estimated) =
- *           exp([e x]) C_nb (true)
+ *      6-8  attitude [rad], about north, east, down, as displayed or in Earth-fixed axes
+ *           (imk_attitude_errors)
  *
  *  in the north-east-down axes of the true place. Equations: docs/theory/error-growth.md.
  *
@@ -19,8 +19,8 @@
  *  mean. Terms of which only the size is known (repeatability, N, B, K, Gauss-Markov, 1 sigma of
  *  calibrated values) give the covariance. With `compensated`, known values are taken out and their
  *  sigmas remain: those of biases, warm-up, scale factors, nonlinearity, misalignment, cross-axis
- *  response, sensitivities to force, lever arms, ramps, rate error and skew of the clock. The delay
- *  caused by a bandwidth remains.
+ *  response, sensitivities to force, lever arms, ramps, rate error and skew of the clock, with the
+ *  correlations that the model states (imk_correlation). The delay caused by a bandwidth remains.
  *
  *  Power-on, from which random walks, ramps and warm-up count, is the start of the self-alignment,
  *  or of the navigation with a given attitude. */
@@ -51,6 +51,18 @@ typedef enum imk_alignment_source {
                         over alignment_time (imk_alignment, method means) */
 } imk_alignment_source;
 
+/** Which error of the attitude is meant, in results and in initial_sigma. */
+typedef enum imk_attitude_errors {
+    IMK_ATTITUDE_LOCAL = 0, /**< phi, of what a display shows: attitude relative to the local level
+                               at the computed position, against the true one relative to the level
+                               at the true position (imk_displayed_attitude_error()). Tilt about
+                               north and east, and the error of the heading, in (-pi, pi]; of the
+                               grid heading beyond IMK_GRID_LATITUDE */
+    IMK_ATTITUDE_EARTH      /**< psi, against Earth-fixed axes: rotation vector, C_eb (estimated) =
+                               exp([psi x]) C_eb (true). It holds what a display hides: an error of the
+                               position that the attitude follows */
+} imk_attitude_errors;
+
 /** Motion, navigator and times of the analysis. Start from imk_drift_default(). */
 typedef struct imk_drift_settings {
     uint32_t cookie;
@@ -62,7 +74,14 @@ typedef struct imk_drift_settings {
     imk_alignment_source alignment;
     double alignment_time;                  /**< [s]; 1 … 1e7, default 300 */
     double initial_sigma[IMK_DRIFT_STATES]; /**< 1 sigma of independent errors at the start; those
-                                               of attitude are used for IMK_ALIGNED_GIVEN only */
+                                               of attitude are used for IMK_ALIGNED_GIVEN only, and
+                                               are in the sense of `attitude_errors` */
+    imk_attitude_errors attitude_errors;
+    /** 1 sigma of what gravity has beside normal gravity across the vertical, north and east each
+     *  [m/s^2]; 0 … 0.1, default 0. 25 to 50 ug, 5 to 10 arc seconds, are usual. */
+    double gravity_deflection;
+    double gravity_distance; /**< its correlation distance along the ground [m]: a Gauss-Markov
+                                process of first order; default 20 km. 0: constant, as at rest */
     bool compensated;
     size_t time_count;
     const double *time; /**< times at which errors are computed, from the start of navigation:
@@ -83,8 +102,8 @@ IMK_API imk_drift_settings imk_drift_default(void);
 /** Check the settings, and the model with them. @return the errors of imk_model_validate() and
  *  imk_trajectory_validate(), IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _EMPTY (no time),
  *  _TIME_ORDER, _CONFLICT (a motion without the Earth; self-alignment on one that does not begin at
- *  rest, or within 1 deg of a pole), _UNSUPPORTED (other than three gyros and three accelerometers
- *  along body x, y, z) */
+ *  rest, or within 1 deg of a pole; with `compensated`, correlations whose matrix is not positive),
+ *  _UNSUPPORTED (other than three gyros and three accelerometers along body x, y, z) */
 IMK_API imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *settings,
                                       imk_error *error);
 
@@ -111,11 +130,22 @@ typedef struct imk_drift_source {
     const char *text; /**< in words: "gyro bias repeatability" */
 } imk_drift_source;
 
-/** Result of imk_drift_covariance(), in the memory given to it. The moments of the sources add up
- *  to the total, exactly if added in their order. */
+/** What two sources have in common, because the values that they are the uncertainty of were
+ *  calibrated together (imk_correlation): with `compensated` only. */
+typedef struct imk_drift_cross {
+    size_t first, second; /**< sources, first < second */
+    /** [time]: means of 0, and the covariance that both together have beyond the sum of theirs; it
+     *  may be negative. If the sources are multiplied by a and b, it is by a b. */
+    const imk_drift_moments *moments;
+} imk_drift_cross;
+
+/** Result of imk_drift_covariance(), in the memory given to it. The moments of the sources, and
+ *  after them those of the crosses, add up to the total, exactly if added in their order (variances
+ *  that rounding makes negative are 0 in the total). */
 typedef struct imk_drift_analysis {
-    size_t source_count, time_count;
+    size_t source_count, time_count, cross_count;
     const imk_drift_source *source;
+    const imk_drift_cross *cross;          /**< cross_count pairs of sources */
     const imk_drift_moments *contribution; /**< [source * time_count + time] */
     const imk_drift_moments *total;        /**< [time] */
     /** [time]: the covariance that the filter of an aided navigator has computed for itself; equal
@@ -135,7 +165,7 @@ typedef struct imk_drift_analysis {
 IMK_API size_t imk_drift_covariance_size(const imk_model *model,
                                          const imk_drift_settings *settings);
 /** Covariance analysis along the motion. At 2.7 GHz, a day at rest takes some 40 ms and 10 minutes
- *  of a car's drive 60 ms, mostly for the 32 stages of the flicker noise.
+ *  of a car's drive 60 ms, mostly for the 28 stages of the flicker noise.
  *  @param memory    imk_drift_covariance_size() bytes; holds the analysis
  *  @param executor  sources are its work items; NULL: serial. The bits do not depend on it
  *  @return the errors of imk_drift_validate(), IMK_ERROR_WORKSPACE */
@@ -152,9 +182,9 @@ IMK_API size_t imk_drift_runs_workspace_size(const imk_model *model,
 /** Runs first … first + count - 1: each simulated as imk_simulator does (the samples are those of
  *  `imukit simulate --run`), aligned, and navigated. The bits of a run depend only on model,
  *  settings, seed and its number. With `compensated`, each run draws the error that calibration
- *  left in every known value (normal, term IMK_TERM_RESIDUAL). Initial errors are drawn by
- *  IMK_TERM_INITIAL, those of height and climb for a free vertical only. docs/theory/monte-carlo.md
- *  has the numbers.
+ *  left in every known value (normal, with the model's correlations, term IMK_TERM_RESIDUAL).
+ *  Initial errors are drawn by IMK_TERM_INITIAL, those of height and climb for a free vertical
+ *  only. docs/theory/monte-carlo.md has the numbers.
  *
  *  Self-alignment takes the first alignment_time * rate rows, rounded; a motion has a standstill of
  *  that length before it. The error at a time is that at the end of the last sample that has ended
@@ -196,8 +226,8 @@ typedef struct imk_drift_figures {
     double north, east, height; /**< root mean squares [m] */
     double velocity;            /**< horizontal, rms [m/s] */
     double climb;               /**< vertical velocity, rms [m/s] */
-    double tilt;                /**< roll and pitch together, rms [rad] */
-    double heading;             /**< rms [rad] */
+    double tilt;                /**< about the horizontal axes together, rms [rad] */
+    double heading;             /**< about the vertical, rms [rad] */
 } imk_drift_figures;
 
 /** Figures of a normal distribution, mean included; the radii have a relative error of 1e-9. */

@@ -8,6 +8,7 @@
 #include "imukit/drift.h"
 #include "imukit/job.h"
 #include "imukit/model.h"
+#include "imukit/model_unstated.h"
 #include "imukit/units.h"
 
 IMK_BEGIN_C
@@ -64,12 +65,29 @@ typedef struct imk_drift_models_settings {
     bool calibrated; /**< true: analyse each model with its known values taken out; a single model
                         also without; default false */
     imk_drift_wanted want;
+    /** true: devices of the catalogue are analysed with typical values for what their sources leave
+     *  out (imk_model_assume_class() with `assumed_class`). It does not concern the models, for
+     *  which the caller does the same; default false */
+    bool assume;
+    imk_grade assumed_class;
 } imk_drift_models_settings;
 
 /** As imk_drift_default(), without a requirement. */
 IMK_API imk_drift_models_settings imk_drift_models_default(void);
 
 enum { IMK_DRIFT_MODELS_MAX = 8 };
+
+/** Terms that a model does not state are material above this share of the mean square error. */
+#define IMK_DRIFT_MATERIAL 0.05
+
+/** A term that the model does not state and that would matter: with typical values for all that is
+ *  not stated, it has more than IMK_DRIFT_MATERIAL of the mean square of a figure. */
+typedef struct imk_drift_missing {
+    imk_unstated_term term;
+    double share;                 /**< its largest share at the times looked at, 0 … 1 */
+    double time;                  /**< the time of this share [s] */
+    imk_drift_requirement figure; /**< the figure: DRMS, height, velocity, tilt or heading */
+} imk_drift_missing;
 
 /** One line of an error budget: one source at one time. */
 typedef struct imk_drift_share {
@@ -93,15 +111,24 @@ typedef struct imk_drift_case {
     size_t share_count; /**< number of sources with a share or a shift at that time, the largest
                            share first */
     imk_drift_share *share;
+    /** Share that correlations between terms have of the same variance, beyond the terms by
+     *  themselves (imk_drift_cross): it may be negative; 0: there are none. */
+    double correlation_share;
+    /** Terms that the model does not state and that would matter at the rows of the table, the
+     *  largest share first. If there are any, all figures are lower bounds. */
+    size_t missing_count;
+    imk_drift_missing missing[IMK_UNSTATED_MAX];
 } imk_drift_case;
 
 /** A device of the catalogue that may meet the requirement. */
 typedef struct imk_drift_candidate {
     const imk_device *device;
     imk_drift_figures figures;
-    bool usable;  /**< it has gyros and accelerometers, and the analysis succeeded */
-    bool no_bias; /**< its source does not state the run-to-run bias of the gyros or of the
-                     accelerometers */
+    bool usable; /**< it has gyros and accelerometers, and the analysis succeeded */
+    /** Terms that its source does not state and that would matter for the figure wanted: if there
+     *  are any, the figures are lower bounds. */
+    size_t missing_count;
+    imk_drift_missing missing[IMK_UNSTATED_MAX];
     bool no_memory;
 } imk_drift_candidate;
 

@@ -110,7 +110,8 @@ IMK_API imk_status imk_navigation_filter_aligned(const imk_alignment_result *ali
 /** Estimate of the filter. */
 typedef struct imk_navigation_filter_estimate {
     imk_navigation_state state;
-    /** Of position, velocity and attitude errors; north, east, down at the estimated place. */
+    /** Of position, velocity and attitude errors; north, east, down at the estimated place. Those
+     *  of attitude are of what is displayed (imk_displayed_attitude_error()). */
     double covariance[IMK_NAVIGATION_ERRORS][IMK_NAVIGATION_ERRORS];
     imk_vector3 gyro_bias, accel_bias;             /**< sums of the parts; body axes */
     imk_vector3 gyro_bias_sigma, accel_bias_sigma; /**< 1 sigma of these biases */
@@ -128,9 +129,11 @@ typedef struct imk_navigation_filter_counts {
     double chi_square; /**< sum of their squared normalised innovations; near `degrees` if the model
                           describes the unit */
     uint64_t pairs;    /**< degrees of freedom of accepted updates whose predecessor has as many */
-    double pair_sum;   /**< sum of the products of normalised innovations with those before; near 0
-                          within sqrt(pairs) if errors of the aid are not correlated in time */
+    double pair_sum;   /**< sum of the products of normalised innovations with those before */
 } imk_navigation_filter_counts;
+/** Correlation of the innovations with those before: 0 within 1/sqrt(pairs) if all is as described;
+ *  more if errors of the aid are correlated in time and not described so. NaN without pairs. */
+IMK_API double imk_navigation_filter_correlation(const imk_navigation_filter_counts *counts);
 
 /** A filter in progress: opaque memory of imk_navigation_filter_size() bytes, given by the caller.
  */
@@ -164,6 +167,7 @@ typedef struct imk_aid_reading {
                         zero velocity: 0 */
     double sigma[3]; /**< 1 sigma of w of this reading (aiding.h), on the axes of the kind; 0: that
                         of the aid; infinity: not measured */
+    bool compare;    /**< only compare: the innovation is that, and nothing changes */
 } imk_aid_reading;
 
 typedef enum imk_aid_verdict {

@@ -257,7 +257,7 @@ static void an_interrupt_says_how_to_go_on(void **state)
     assert_int_equal(run("$I drift m.yaml --duration 1min --seed 3 --monte-carlo 400 -o x.h5"), 0);
     check_contains(err, " of 400 runs exist already\n", "what the interrupt left");
     assert_int_equal(run("$I drift m.yaml --duration 1min --seed 3 --monte-carlo 400 -o x.h5"), 0);
-    assert_string_equal(err, "imukit drift: 400 of 400 runs exist already\n");
+    check_contains(err, "imukit drift: 400 of 400 runs exist already\n", "nothing is left to do");
     sweep();
 }
 

@@ -301,6 +301,8 @@ static void test_g_of_another_maker(void **state)
     const double gravity = imk_normal_gravity(45 * 3.14159265358979323846 / 180, 0) / 9.80665;
     const double rate = 15.041067 / 3600 / sqrt(2); /* deg/s, north and down at 45 deg */
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        if (check_skips(i, 3))
+            continue;
         FILE *file = fopen("g.csv", "wb");
         assert_non_null(file);
         fprintf(file, "time [s],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],accel_x [g],accel_y "
@@ -338,6 +340,8 @@ static void test_coarse_gyros(void **state)
                          "--model coarse.yaml"),
                      0);
     check_contains(out, "north not found", "heading");
+    check_contains(out, "(means, because the gyro biases hide the Earth's rotation)", "method");
+    check_contains(err, "add --heading", "north_unknown");
     sweep();
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The run: samples through the mechanisation, updates where the unit stands, and the track. */
-#include "navigate_log_internal.h"
+#include "navigate_aids_internal.h"
 
 #include <math.h>
 
@@ -24,6 +24,10 @@ static imk_status describe_errors(imk_navigate_log *n, imk_navigation_filter_set
     s->samples = o->samples;
     s->velocity_sigma = o->still_velocity;
     s->rotation_sigma = o->still_rotation;
+    for (int i = 0; i < 3; i++) {
+        s->initial_sigma[i] = o->position_sigma[i];
+        s->initial_sigma[3 + i] = o->velocity_sigma[i];
+    }
     if (aligned)
         s->initial_sigma[3] = s->initial_sigma[4] = s->initial_sigma[5] = o->still_velocity;
     for (int i = 0; i < 3 && !(aligned && o->model); i++)
@@ -38,9 +42,11 @@ static imk_status describe_errors(imk_navigate_log *n, imk_navigation_filter_set
     imk_status status = imk_navigation_filter_describe(
         o->model, n->record.dt, imk_matrix3_apply(c_bn, imk_earth_rate(place.latitude)),
         imk_matrix3_apply(c_bn, up), s, error);
-    if (status == IMK_OK && aligned)
-        status = imk_navigation_filter_aligned(&n->alignment, n->method, !o->heading_given,
+    if (status == IMK_OK && aligned) {
+        imki_navigate_free_biases(n, s);
+        status = imk_navigation_filter_aligned(&n->alignment, n->method, imki_navigate_north(n),
                                                n->record.dt * (double)n->first, s);
+    }
     if (status == IMK_OK)
         return status;
     return imki_fail(&n->findings, error, status,
@@ -84,33 +90,16 @@ static void put_track(imk_navigate_log *n, const imk_navigation_filter_estimate 
                       double time, imk_vector3 sum, size_t count)
 {
     double row[IMK_TRACK_COLUMNS];
-    imk_geodetic place;
-    imk_vector3 velocity;
-    imk_matrix3 c_nb;
-    imk_navigation_state_to_ned(&estimate->state, &place, &velocity, &c_nb);
-    const imk_vector3 way = imk_navigation_difference_ned(&estimate->state, &n->start);
+    imki_navigate_track_row(n, estimate, row);
     row[IMK_TRACK_TIME] = time;
-    row[IMK_TRACK_LATITUDE] = place.latitude;
-    row[IMK_TRACK_LONGITUDE] = place.longitude;
-    row[IMK_TRACK_HEIGHT] = place.height;
-    for (int i = 0; i < 3; i++) {
-        row[IMK_TRACK_NORTH + i] = way.v[i];
-        row[IMK_TRACK_VELOCITY + i] = velocity.v[i];
-    }
-    /* Down is along the vertical, north and east across that of the start: a way of 40 km would
-     * else lead down by the curvature of the Earth. */
-    row[IMK_TRACK_NORTH + 2] = n->settings.place.height - place.height;
-    imk_matrix3_to_euler(c_nb, &row[IMK_TRACK_ROLL], &row[IMK_TRACK_PITCH], &row[IMK_TRACK_YAW]);
+    const imk_geodetic place = imk_geodetic_from_ecef(estimate->state.position);
     const imk_matrix3 axes = imk_ned_axes(place.latitude, place.longitude);
     sum = imk_matrix3_apply(imk_matrix3_transpose(axes), sum);
     for (int i = 0; i < 3; i++)
         row[IMK_TRACK_ACCELERATION + i] = count > 0 ? sum.v[i] / (double)count : 0.0;
-    for (int i = 0; i < IMK_NAVIGATION_ERRORS; i++)
-        row[IMK_TRACK_SIGMA + i] = sqrt(fmax(0.0, estimate->covariance[i][i]));
     for (int k = 0; k < IMK_TRACK_COLUMNS; k++)
         n->track[k][n->track_rows] = row[k];
     n->track_rows++;
-    n->largest = fmax(n->largest, hypot(way.v[0], way.v[1]));
 }
 
 /* ---- updates -----------------------------------------------------------------------------------
@@ -253,7 +242,8 @@ static void keep_timetable(const imk_navigate_log *n, imk_navigation_filter *fil
 /* ---- run ---------------------------------------------------------------------------------------
  */
 
-static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, stops *s, size_t every,
+static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, stops *s,
+                         imki_navigate_aids *aids, imk_navigation_smoother *smoother, size_t every,
                          const imk_job *job, imk_error *error)
 {
     imk_status status = IMK_OK;
@@ -261,6 +251,7 @@ static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, sto
     imk_vector3 sum = {{0}};
     size_t count = 0;
     put_track(n, &n->end, n->first_time + n->record.dt * ((double)n->first - 1.0), sum, count);
+    status = imki_navigate_mark(smoother, error);
     for (size_t row = n->first; row < n->record.rows && status == IMK_OK; row++) {
         const size_t done = row + 1 - n->first;
         const imk_navigation_state before = imk_navigation_filter_state(filter);
@@ -269,6 +260,7 @@ static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, sto
         const imk_navigation_state after = imk_navigation_filter_state(filter);
         sum = imk_vector3_add(sum, acceleration(n, &before, &after, row));
         count++;
+        imki_aids_update(n, aids, filter, row);
         watch(n, filter, s, row);
         if (n->settings.stops == IMK_STOPS_TIMETABLE)
             keep_timetable(n, filter, s, n->record.dt * (double)done);
@@ -277,11 +269,13 @@ static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, sto
             put_track(n, &n->end, n->first_time + n->record.dt * (double)row, sum, count);
             sum = (imk_vector3){{0}};
             count = 0;
-            status = imki_job_progress(job, "navigating", "rows", row, n->record.rows, error);
+            status = imki_navigate_mark(smoother, error);
+            if (status == IMK_OK)
+                status = imki_job_progress(job, "navigating", "rows", row, n->record.rows, error);
         }
     }
     n->counts = imk_navigation_filter_counted(filter);
-    n->at_rest = is_at_rest(s);
+    n->at_rest = is_at_rest(s) && n->aid_count == 0;
     return status;
 }
 
@@ -327,6 +321,16 @@ imk_status imki_navigate_follow(imk_navigate_log *n, const imk_job *job, imki_ar
     const double steps = n->settings.interval / n->record.dt;
     const size_t every = steps < 1.5 ? 1 : steps < 1e15 ? (size_t)llround(steps) : n->record.rows;
     imk_status status = describe_errors(n, &settings, error);
+    imki_navigate_aids *aids = imki_arena_take(scratch, sizeof *aids);
+    if (!aids)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    if (status == IMK_OK && n->settings.aids) {
+        status = imki_aids_load(n, job, scratch, aids, error);
+        if (status == IMK_OK)
+            status = imki_aids_start(n, aids, error);
+        if (status == IMK_OK)
+            imki_aids_describe(n, aids, &settings);
+    }
     if (status == IMK_OK && imki_navigate_aligns(n))
         status = learn_rest(n, &s, error);
     if (status == IMK_OK)
@@ -338,10 +342,18 @@ imk_status imki_navigate_follow(imk_navigate_log *n, const imk_job *job, imki_ar
     status = memory
                  ? imk_navigation_filter_start(&settings, &n->start, &filter, memory, size, error)
                  : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    imk_navigation_smoother *smoother = NULL;
     if (status == IMK_OK)
-        status = follow(n, filter, &s, every, job, error);
+        imki_navigate_start_biases(n, filter);
+    if (status == IMK_OK && n->settings.smooth)
+        status = imki_navigate_record(filter, scratch, &smoother, error);
+    if (status == IMK_OK)
+        status = follow(n, filter, &s, aids, smoother, every, job, error);
+    if (status == IMK_OK && smoother)
+        status = imki_navigate_smooth(n, smoother, error);
     if (status != IMK_OK)
         return status;
+    imki_aids_finish(n, aids, filter);
     warn_of_updates(n, &s);
     return check_track(n, error);
 }

@@ -132,6 +132,10 @@ void imki_drift_column_at(const imki_drift_column *column, const imki_drift_node
     case IMKI_COLUMN_SKEW:
         carried_column(column, node, raw);
         break;
+    case IMKI_COLUMN_GRAVITY:
+        for (int i = 0; i < 3; i++)
+            raw[3 + i] = -node->axes.m[i][column->axis];
+        break;
     case IMKI_COLUMN_CLOCK: /* the truth goes slower than the samples */
         put_motion(node, raw);
         break;
@@ -180,6 +184,7 @@ void imki_drift_alignment_step(const imki_drift_walk *walk, const imki_drift_pla
     step->h = time;
     step->moments = 1;
     step->repeat = 1;
+    imki_drift_gravity_step(walk->settings, true, step);
     memset(&step->phi, 0, sizeof step->phi);
     for (int i = 0; i < 9; i++) /* nothing is there yet that would move */
         step->phi.m[i][i] = 1.0;

@@ -5,6 +5,7 @@
  * drivers over their lengths, and the sources over all of them are work items, each alone with its
  * own results: nothing depends on who does what when. */
 #include "drift_aided_internal.h"
+#include "drift_correlation_internal.h"
 
 #include "base/workspace_internal.h"
 
@@ -29,14 +30,18 @@ typedef struct work {
     bool aids;
     size_t time; /* index of the result */
     imk_drift_moments *contribution, *believed;
-    size_t time_count;
+    size_t time_count, cross_count;
+    imk_drift_cross *cross;
+    imk_drift_moments *cross_moments; /* [cross][time] */
 } work;
 
 typedef struct layout {
     imk_drift_analysis *analysis;
     work *work;
     imk_drift_source *source;
-    imk_drift_moments *contribution, *total, *believed;
+    imk_drift_moments *contribution, *total, *believed, *cross_moments;
+    imk_drift_cross *cross;
+    size_t cross_max;
     double *time;
     imki_drift_part *part;
     imki_drift_element *element;
@@ -75,6 +80,9 @@ static layout lay_out(const imk_model *model, const imk_drift_settings *settings
     l.analysis = imki_take(&l.memory, sizeof *l.analysis);
     l.source = imki_take(&l.memory, sources * sizeof *l.source);
     l.contribution = imki_take(&l.memory, sources * times * sizeof *l.contribution);
+    l.cross_max = imki_drift_cross_max(model, settings);
+    l.cross = imki_take(&l.memory, l.cross_max * sizeof *l.cross);
+    l.cross_moments = imki_take(&l.memory, l.cross_max * times * sizeof *l.cross_moments);
     l.total = imki_take(&l.memory, times * sizeof *l.total);
     l.believed = imki_take(&l.memory, (settings->aid_count > 0 ? times : 0) * sizeof *l.believed);
     l.time = imki_take(&l.memory, times * sizeof *l.time);
@@ -168,6 +176,9 @@ static void run_block(work *w, imk_work source_work, const imk_executor *executo
     if (w->fresh_count > 0)
         imk_execute(executor, w->plan.driver_count, fill_driver, w);
     imk_execute(executor, w->plan.source_count, source_work, w);
+    for (size_t k = 0; k < w->cross_count && w->reports; k++)
+        imki_drift_cross_at(&w->plan, &w->cross[k], &w->report,
+                            &w->cross_moments[k * w->time_count + w->time]);
     w->fresh_count = 0;
     w->step_count = 0;
 }
@@ -199,11 +210,13 @@ static void advance(work *w, double time, double goal, const imk_executor *execu
                 imki_loop_take(&w->loop, step, time, !(time < limit));
         }
         w->reports = !(time < goal);
-        if (w->reports)
+        if (w->reports) {
             imki_drift_node_at(&w->walk, w->walk.motion.start + (w->walk.rests ? 0.0 : goal),
                                &w->report);
-        if (w->reports && w->aids)
-            imki_loop_believed(&w->loop, &w->report, &w->believed[w->time]);
+            imki_drift_level(w->walk.earth, w->walk.settings->attitude_errors, &w->report);
+            if (w->aids)
+                imki_loop_believed(&w->loop, &w->report, &w->believed[w->time]);
+        }
         imk_execute(executor, w->step_count, fill_step, w);
         run_block(w, move_source, executor);
     }
@@ -241,6 +254,11 @@ static void start_work(work *w, const layout *l, const imk_model *model,
     imk_motion_state state;
     imk_trajectory_state(&w->walk.motion.trajectory, w->walk.motion.start, &state);
     imki_drift_sources(&w->plan, model, settings, state.place);
+    w->cross = l->cross;
+    w->cross_moments = l->cross_moments;
+    w->cross_count = imki_drift_cross_pairs(&w->plan, l->cross_max, l->cross);
+    for (size_t k = 0; k < w->cross_count; k++)
+        l->cross[k].moments = &l->cross_moments[k * w->time_count];
     for (size_t i = 0; i < w->plan.column_count; i++)
         w->walk.needs_slope = w->walk.needs_slope || l->column[i].kind == IMKI_COLUMN_JITTER;
 }
@@ -289,19 +307,27 @@ static void omit_ranges(work *w, const imk_model *model)
     }
 }
 
+static void add_moments(imk_drift_moments *total, const imk_drift_moments *part)
+{
+    for (int i = 0; i < 9; i++) {
+        total->mean[i] += part->mean[i];
+        for (int j = 0; j < 9; j++)
+            total->covariance[i][j] += part->covariance[i][j];
+    }
+}
+
 static void add_up(const layout *l, size_t sources, size_t times)
 {
     for (size_t time = 0; time < times; time++) {
         imk_drift_moments *total = &l->total[time];
         memset(total, 0, sizeof *total);
-        for (size_t source = 0; source < sources; source++) {
-            const imk_drift_moments *part = &l->contribution[source * times + time];
-            for (int i = 0; i < 9; i++) {
-                total->mean[i] += part->mean[i];
-                for (int j = 0; j < 9; j++)
-                    total->covariance[i][j] += part->covariance[i][j];
-            }
-        }
+        for (size_t source = 0; source < sources; source++)
+            add_moments(total, &l->contribution[source * times + time]);
+        for (size_t k = 0; k < l->work->cross_count; k++)
+            add_moments(total, &l->cross_moments[k * times + time]);
+        for (int i = 0; i < 9 && l->work->cross_count > 0; i++) /* rounding */
+            if (!(total->covariance[i][i] > 0.0))
+                total->covariance[i][i] = 0.0;
     }
 }
 
@@ -340,6 +366,8 @@ imk_status imki_drift_covariance_on(imki_drift_earth earth, const imk_model *mod
     l.analysis->source = l.source;
     l.analysis->contribution = l.contribution;
     l.analysis->total = l.total;
+    l.analysis->cross_count = l.work->cross_count;
+    l.analysis->cross = l.cross;
     l.analysis->believed = settings->aid_count > 0 ? l.believed : NULL;
     l.analysis->time = l.time;
     l.analysis->omitted_count = l.work->plan.omitted_count;

@@ -10,6 +10,7 @@
  * source adds up its elements, which are independent: one P for all, an S and Z for each. Behind
  * these nine, an aided navigator has more states: drift_feedback.c. */
 #include "drift_aided_internal.h"
+#include "drift_correlation_internal.h"
 
 #include "imukit/distort.h"
 
@@ -44,7 +45,7 @@ static void move_constant(imki_drift_element *element, const imki_drift_step *st
 /* ---- noise ---- */
 
 /* Of p, n x n, the first nine rows and columns: so all of them here. */
-static void move_covariance(double *p, size_t n, const imki_matrix9 *phi)
+void imki_drift_turn_covariance(double *p, size_t n, const imki_matrix9 *phi)
 {
     imki_matrix9 half = {{{0.0}}}, turned, whole = {{{0.0}}};
     for (int i = 0; i < 9; i++)
@@ -147,7 +148,9 @@ static void move_elements(const imki_drift_plan *plan, imki_drift_part *part,
     double weight[IMKI_DRIFT_MOMENTS][IMKI_DRIFT_MOMENTS] = {{0.0}};
     for (size_t i = part->first; i < part->first + part->count; i++) {
         imki_drift_element *element = &plan->element[i];
-        const imki_driver_step *driver = &over[element->driver][step->slot];
+        const bool of_step = plan->column[element->column].kind == IMKI_COLUMN_GRAVITY;
+        const imki_driver_step *driver =
+            of_step ? &step->gravity : &over[element->driver][step->slot];
         if (!is_noise(element)) {
             move_constant(element, step, driver);
             continue;
@@ -173,7 +176,7 @@ void imki_drift_propagate(const imki_drift_plan *plan, imki_drift_part *part,
         if (noisy && step->aided)
             imki_feed_covariance(plan->states, step, part->covariance);
         else if (noisy)
-            move_covariance(part->covariance, plan->states, &step->phi);
+            imki_drift_turn_covariance(part->covariance, plan->states, &step->phi);
         move_elements(plan, part, step, over);
     }
     if (step->aided)
@@ -243,26 +246,12 @@ void imki_drift_begin(const imki_drift_plan *plan, imki_drift_part *part,
 
 /* ---- results ---- */
 
-/* Rows and columns of the result from those of x: position, velocity, attitude. */
-static const int place[3] = {6, 3, 0};
-
-/* T: north-east-down components of the errors, in the order of the result. What a slaved vertical
- * makes zero is so to the bit. */
-static void result_axes(const imki_drift_node *node, imki_matrix9 *t)
+void imki_drift_element_at(const imki_drift_plan *plan, const imki_drift_element *element,
+                           const imki_drift_node *node, double x[9])
 {
-    memset(t, 0, sizeof *t);
-    for (int block = 0; block < 3; block++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 9; j++)
-                for (int k = 0; k < 3; k++)
-                    t->m[3 * block + i][j] +=
-                        node->axes.m[k][i] * node->full.m[place[block] + k][j];
-    if (!node->slaved)
-        return;
-    for (int j = 0; j < 9; j++) {
-        t->m[2][j] = 0.0;
-        t->m[5][j] = j >= place[0] ? -node->climb[j - place[0]] : 0.0;
-    }
+    imki_drift_carried_at(&plan->column[element->column], node, x);
+    for (int j = 0; j < 9; j++)
+        x[j] = element->x[j] + x[j] * element->state[0]; /* of rounding there is no x */
 }
 
 void imki_drift_moments_at(const imki_drift_plan *plan, const imki_drift_part *part,
@@ -276,17 +265,16 @@ void imki_drift_moments_at(const imki_drift_plan *plan, const imki_drift_part *p
         const imki_drift_element *element = &plan->element[i];
         if (element->use == IMKI_ELEMENT_NOISE)
             continue;
-        imki_drift_carried_at(&plan->column[element->column], node, c);
-        for (int j = 0; j < 9; j++)
-            c[j] = element->x[j] + c[j] * element->state[0]; /* of rounding there is no x */
+        imki_drift_element_at(plan, element, node, c);
         if (element->use == IMKI_ELEMENT_MEAN)
             for (int j = 0; j < 9; j++)
                 mean[j] += c[j];
         else
             add_square(&p.m[0][0], 9, 1.0, c);
     }
-    result_axes(node, &t);
-    move_covariance(&p.m[0][0], 9, &t);
+    imki_drift_add_correlated(plan, part, part, node, &p);
+    imki_drift_result_axes(node, &t);
+    imki_drift_turn_covariance(&p.m[0][0], 9, &t);
     for (int i = 0; i < 9; i++) {
         moments->mean[i] = 0.0;
         for (int j = 0; j < 9; j++)

@@ -10,6 +10,7 @@
  *
  * Counts are divided by the sensitivity. A row that is lost repeats the one before it. */
 #include "drift_aided_internal.h"
+#include "drift_correlation_internal.h"
 #include "drift_runs_internal.h"
 
 #include "base/workspace_internal.h"
@@ -40,6 +41,7 @@ typedef struct run {
     double interval;            /* of rows in true time [s] */
     double *column[CHANNELS];   /* ROWS each */
     double held[CHANNELS];      /* the row before */
+    double deflection[2];       /* of gravity, north and east, in the row before */
     bool gone;                  /* has left the Earth, or found no attitude */
 } run;
 
@@ -59,7 +61,9 @@ typedef struct crew {
     double start;                  /* of row 0 in the trajectory */
     imk_model *drawn;              /* model of a run with what calibration left */
     double *height, *climb, *time; /* ROWS each */
+    imki_gravity_row *gravity;     /* ROWS; NULL: gravity is normal */
     size_t count;
+    double correlation[IMKI_CORRELATION_FACTOR]; /* of what calibration left, factored */
     run run[LANES];
     size_t states;                         /* of a result: the errors, and of a filter more */
     imki_aided_run *aided;                 /* of each run; NULL: no aids */
@@ -101,6 +105,11 @@ static size_t piece_count(const imk_drift_settings *settings)
                : 0;
 }
 
+static size_t gravity_size(const imk_drift_settings *settings)
+{
+    return settings->gravity_deflection > 0.0 ? ROWS * sizeof(imki_gravity_row) : 0;
+}
+
 /* The filters of the runs, and what is needed to describe them. */
 static size_t filters_size(const imk_model *model, const imk_drift_settings *settings)
 {
@@ -118,8 +127,8 @@ size_t imk_drift_runs_workspace_size(const imk_model *model, const imk_drift_set
         imki_aligned(CHANNELS * ROWS * sizeof(double)) + simulator_size(model, settings);
     return imki_aligned(sizeof(crew)) + imki_aligned(sizeof(imk_model)) +
            imki_aligned(piece_count(settings) * sizeof(imk_trajectory_piece)) +
-           imki_aligned(3 * ROWS * sizeof(double)) + LANES * run_size +
-           filters_size(model, settings) + IMKI_ALIGNMENT_SLACK;
+           imki_aligned(3 * ROWS * sizeof(double)) + imki_aligned(gravity_size(settings)) +
+           LANES * run_size + filters_size(model, settings) + IMKI_ALIGNMENT_SLACK;
 }
 
 /* ---- start ---- */
@@ -165,13 +174,12 @@ static imk_status start_run(crew *c, run *r, imki_parts *memory, imk_error *erro
 {
     const imk_drift_settings *s = c->settings;
     const imk_model *model = c->model;
-    const bool given = s->alignment == IMK_ALIGNED_GIVEN;
     double *columns = imki_take(memory, CHANNELS * ROWS * sizeof(double));
     for (size_t i = 0; i < CHANNELS; i++)
         r->column[i] = columns + i * ROWS;
     if (s->compensated) {
         *c->drawn = *c->model;
-        imki_drift_residual(c->drawn, c->random, r->number);
+        imki_drift_residual(c->drawn, c->correlation, c->random, r->number);
         model = c->drawn;
     }
     r->interval = c->dt / (1.0 + model->timing.rate_error.value);
@@ -187,8 +195,7 @@ static imk_status start_run(crew *c, run *r, imki_parts *memory, imk_error *erro
         return status;
     const double begin = imk_simulator_true_time(r->simulator, (int64_t)c->alignment_rows);
     const imk_navigation_state truth = imki_drift_truth(c->trajectory, begin, 0.0);
-    r->start =
-        imki_drift_displaced(&truth, s->initial_sigma, c->slaved, given, c->random, r->number);
+    r->start = imki_drift_displaced(&truth, s, c->random, r->number);
     return IMK_OK;
 }
 
@@ -208,6 +215,8 @@ static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *
     const imk_drift_settings *s = c->settings;
     c->drawn = imki_take(memory, sizeof *c->drawn);
     c->height = imki_take(memory, 3 * ROWS * sizeof(double));
+    if (s->gravity_deflection > 0.0)
+        c->gravity = imki_take(memory, gravity_size(s));
     c->climb = c->height + ROWS;
     c->time = c->climb + ROWS;
     c->kernel = c->random.kernel;
@@ -218,6 +227,8 @@ static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *
         c->alignment_rows += c->alignment_rows == 0;
     }
     c->last_row = c->alignment_rows + row_of(s->time[s->time_count - 1], s->rate);
+    if (s->compensated)
+        (void)imki_correlation_factor(&c->model->correlation, c->correlation); /* was checked */
     imk_status status = start_motion(c, memory, error);
     if (status == IMK_OK && s->aid_count > 0)
         status = start_filters(c, memory, error);
@@ -271,12 +282,18 @@ static void make_block(crew *c, uint64_t first)
         columns[i] = c->run[i].column;
     }
     imki_simulators_next(c->count, simulators, 1, columns);
+    if (c->gravity)
+        imki_gravity_rows(c->settings, c->trajectory, c->start, c->run[0].interval, first, ROWS,
+                          c->gravity);
     for (size_t i = 0; i < c->count; i++) {
         run *r = &c->run[i];
         divide_counts(&c->model->gyro, r->column);
         divide_counts(&c->model->accel, r->column + 3);
         if (c->model->timing.drops.value > 0.0)
             hold_lost(r, first);
+        if (c->gravity)
+            imki_gravity_deflect(c->settings, c->random, r->number, first, ROWS, c->gravity,
+                                 r->deflection, r->column + 3);
     }
 }
 
@@ -302,7 +319,7 @@ static void finish_alignment(crew *c)
         const imk_vector3 force = {{sum[3] / count, sum[4] / count, sum[5] / count}};
         const imk_geodetic place = imk_geodetic_from_ecef(r->start.position);
         imk_matrix3 c_nb = imk_matrix3_identity();
-        r->gone = imki_alignment_of_means(force, rate, &c_nb) != IMK_OK;
+        r->gone = imki_alignment_of_means(force, rate, place, &c_nb) != IMK_OK;
         r->start.attitude = imk_quaternion_from_matrix(
             imk_matrix3_multiply(imk_ned_axes(place.latitude, place.longitude), c_nb));
     }
@@ -407,7 +424,7 @@ static void look(const crew *c, uint64_t row, size_t stride, double *errors)
         const double time = imk_simulator_true_time(r->simulator, (int64_t)row);
         const imk_navigation_state truth = imki_drift_truth(c->trajectory, time, 0.0);
         const imk_navigation_state state = state_of(c, i);
-        imki_drift_errors(&state, &truth, out);
+        imki_drift_errors(&state, &truth, c->settings->attitude_errors, out);
         if (c->states > IMK_DRIFT_STATES)
             out[IMK_DRIFT_STATES] = imki_aided_run_nees(&c->aided[i], &truth);
     }

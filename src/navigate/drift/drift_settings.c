@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What is navigated and when to look: defaults and checks, for the covariance and for the runs. */
+#include "drift_correlation_internal.h"
 #include "drift_settings_internal.h"
 
 #include "base/refuse_internal.h"
@@ -18,8 +19,11 @@ static const double rest_rate = 1e-3 * IMK_EARTH_RATE, rest_velocity = 1e-3 / 60
 
 imk_drift_settings imk_drift_default(void)
 {
-    return (imk_drift_settings){
-        .cookie = COOKIE, .latitude = 0.25 * PI, .rate = 100.0, .alignment_time = 300.0};
+    return (imk_drift_settings){.cookie = COOKIE,
+                                .latitude = 0.25 * PI,
+                                .rate = 100.0,
+                                .alignment_time = 300.0,
+                                .gravity_distance = 20e3};
 }
 
 static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
@@ -90,6 +94,13 @@ static imk_status check_numbers(const imk_drift_settings *s, imk_error *error)
         return refuse(error, "alignment", (double)s->alignment, "\"given\" or \"self\"");
     if (s->alignment == IMK_ALIGNED_SELF && !(s->alignment_time >= 1.0 && s->alignment_time <= 1e7))
         return refuse(error, "alignment_time", s->alignment_time, "1 s to 1e7 s");
+    if (!(s->gravity_deflection >= 0.0 && s->gravity_deflection <= 0.1))
+        return refuse(error, "gravity_deflection", s->gravity_deflection, "0 to 0.1 m/s^2");
+    if (!(s->gravity_distance >= 0.0 && s->gravity_distance <= 1e9))
+        return refuse(error, "gravity_distance", s->gravity_distance, "a distance up to 1e9 m");
+    if (s->attitude_errors != IMK_ATTITUDE_LOCAL && s->attitude_errors != IMK_ATTITUDE_EARTH)
+        return refuse(error, "attitude_errors", (double)s->attitude_errors,
+                      "\"local\" or \"earth\"");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
         if (!(s->initial_sigma[i] >= 0.0 && s->initial_sigma[i] <= 1e9)) {
             const imk_status status = refuse(error, "initial_sigma", s->initial_sigma[i],
@@ -198,6 +209,17 @@ static imk_status check_motion(const imk_drift_settings *settings, imk_error *er
     return IMK_OK;
 }
 
+static imk_status check_correlation(const imk_correlation *correlation, imk_error *error)
+{
+    double factor[IMKI_CORRELATION_FACTOR];
+    return imki_correlation_factor(correlation, factor)
+               ? IMK_OK
+               : imk_error_set(error, IMK_ERROR_CONFLICT, "correlation.values",
+                               "numbers that no quantities have as correlations: their matrix is "
+                               "not positive",
+                               "the correlations of one estimate, or none");
+}
+
 imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *settings,
                               imk_error *error)
 {
@@ -224,5 +246,7 @@ imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *
         status = check_triad(&settings->filter_model->accel, "filter_model.accel", error);
     if (status == IMK_OK)
         status = check_motion(settings, error);
+    if (status == IMK_OK && settings->compensated)
+        status = check_correlation(&model->correlation, error);
     return status;
 }

@@ -218,6 +218,12 @@ imk_navigation_filter_counts imk_navigation_filter_aided(const imk_navigation_fi
     return filter->counts[aid < IMK_AIDS_MAX ? aid : IMK_AIDS_MAX];
 }
 
+double imk_navigation_filter_correlation(const imk_navigation_filter_counts *c)
+{
+    return c->pairs > 0 ? c->pair_sum / (double)c->pairs * (double)c->degrees / c->chi_square
+                        : (double)NAN;
+}
+
 imk_innovation imk_navigation_filter_innovation(const imk_navigation_filter *filter)
 {
     return filter->innovation;
@@ -267,12 +273,23 @@ imk_rest_readings imk_navigation_filter_rest(const imk_navigation_filter *f)
     return rest;
 }
 
-void imk_navigation_filter_get(imk_navigation_filter *f, imk_navigation_filter_estimate *estimate)
+/* Attitude errors psi to those of what is displayed, phi = psi - turn dr: rows, then columns. */
+static void display_attitude(imk_vector3 position, double p[ERRORS][ERRORS])
 {
-    imki_navigation_filter_propagate(f);
-    const imk_matrix3 axes = axes_at(&f->strapdown.state);
-    const size_t n = f->states;
-    estimate->state = f->strapdown.state;
+    const imk_matrix3 turn = imk_level_turn(imk_geodetic_from_ecef(position));
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < ERRORS; j++)
+            p[6 + i][j] -= turn.m[i][0] * p[0][j] + turn.m[i][1] * p[1][j];
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < ERRORS; j++)
+            p[j][6 + i] -= turn.m[i][0] * p[j][0] + turn.m[i][1] * p[j][1];
+}
+
+void imki_estimate_of(const imk_navigation_state *state, const double *covariance, size_t stride,
+                      imk_navigation_filter_estimate *estimate)
+{
+    const imk_matrix3 axes = axes_at(state);
+    estimate->state = *state;
     for (size_t a = 0; a < ERRORS; a += 3)
         for (size_t b = 0; b < ERRORS; b += 3)
             for (size_t i = 0; i < 3; i++)
@@ -280,9 +297,18 @@ void imk_navigation_filter_get(imk_navigation_filter *f, imk_navigation_filter_e
                     double sum = 0.0;
                     for (size_t k = 0; k < 3; k++)
                         for (size_t l = 0; l < 3; l++)
-                            sum += axes.m[k][i] * f->covariance[(a + k) * n + b + l] * axes.m[l][j];
+                            sum +=
+                                axes.m[k][i] * covariance[(a + k) * stride + b + l] * axes.m[l][j];
                     estimate->covariance[a + i][b + j] = sum;
                 }
+    display_attitude(state->position, estimate->covariance);
+}
+
+void imk_navigation_filter_get(imk_navigation_filter *f, imk_navigation_filter_estimate *estimate)
+{
+    imki_navigation_filter_propagate(f);
+    const size_t n = f->states;
+    imki_estimate_of(&f->strapdown.state, f->covariance, n, estimate);
     estimate->gyro_bias = f->bias_sum[IMKI_GYRO_PART];
     estimate->accel_bias = f->bias_sum[IMKI_ACCEL_PART];
     imk_vector3 *sigma[2] = {&estimate->gyro_bias_sigma, &estimate->accel_bias_sigma};

@@ -299,7 +299,7 @@ imk_aid_verdict imk_navigation_filter_aid(imk_navigation_filter *f, size_t aid,
     double sigma[3], z[3];
     response r;
     imki_filter_step shift;
-    imki_measurement m = {.rows = 0};
+    imki_measurement m = {.compare = reading->compare};
     if (aid >= f->settings.aid_count || !choose_axes(f, &f->settings.aid[aid], reading, sigma, &m))
         return IMK_AID_NOT_USED;
     const double rounding = 1e-6 * f->last.dt + 1e-9 * fabs(f->strapdown.state.time);

@@ -72,8 +72,9 @@ struct imk_navigation_filter {
     double *scratch;    /* states x states */
     /* Of the last update that was accepted: */
     size_t rows;
-    double *h;    /* rows x states */
-    double *gain; /* states x rows */
+    double *h;                                /* rows x states */
+    double *gain;                             /* states x rows */
+    struct imk_navigation_smoother *smoother; /* which records; NULL: none */
 };
 
 /* Second moments of a part's mean over an alignment of length `time` and of its value at the end.
@@ -96,6 +97,11 @@ typedef struct imki_filter_gain {
 imki_filter_gain imki_navigation_filter_gain(const imk_navigation_filter *filter);
 /* The covariance of all states, states x states, brought up to the last sample. */
 const double *imki_navigation_filter_covariance(imk_navigation_filter *filter);
+
+/* State and covariance of the nine errors in Earth-fixed axes, rows `stride` apart, into an
+ * estimate, whose biases stay. */
+void imki_estimate_of(const imk_navigation_state *state, const double *covariance, size_t stride,
+                      imk_navigation_filter_estimate *estimate);
 
 /* Are the settings as they must be? */
 imk_status imki_navigation_filter_check(const imk_navigation_filter_settings *settings,
@@ -121,6 +127,7 @@ typedef struct imki_measurement {
     double h[3 * IMKI_FILTER_STATES_MAX]; /* rows x states */
     double z[3], noise[3][3];
     const double *cross;
+    bool compare; /* only */
 } imki_measurement;
 
 /* Tests a measurement, and takes the estimated errors out.

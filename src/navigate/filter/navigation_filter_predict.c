@@ -18,6 +18,7 @@
  * steps of a second. The integral of the gyros' noise
  * since a stand began, s, has with the errors the covariance J <- Phi J + Gamma N^2. */
 #include "navigation_filter_internal.h"
+#include "navigation_smoother_internal.h"
 
 #include "imukit/earth.h"
 #include "imukit/elementary.h"
@@ -365,6 +366,8 @@ void imki_navigation_filter_propagate(imk_navigation_filter *f)
     if (f->settings.hold_height)
         hold_covariance(f, up);
     advance_estimates(f, &rest);
+    if (f->smoother)
+        imki_smoother_step(f->smoother, &step.by, rest.decay, f->settings.hold_height ? &up : NULL);
     if (f->settings.rotation_sigma > 0.0)
         advance_cross(f, &step.by, &rest, up);
     f->span = 0.0;

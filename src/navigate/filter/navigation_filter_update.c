@@ -11,6 +11,7 @@
  * noise. Zero rotation: z is the mean over the stand of what the gyros read beyond biases and the
  * Earth's rate, which is b_g - C^T [w x] e and noise. */
 #include "navigation_filter_internal.h"
+#include "navigation_smoother_internal.h"
 
 #include "imukit/distributions.h"
 #include "imukit/earth.h"
@@ -219,7 +220,7 @@ static void update_cross(imk_navigation_filter *f, const imki_measurement *m)
 }
 
 /* K, and with it the errors and P. */
-static void correct(imk_navigation_filter *f, const imki_measurement *m, const expectation *e)
+static void correct(imk_navigation_filter *f, const imki_measurement *m, expectation *e)
 {
     const size_t n = f->states, rows = m->rows;
     double x[STATES_MAX];
@@ -235,6 +236,8 @@ static void correct(imk_navigation_filter *f, const imki_measurement *m, const e
     }
     f->rows = rows;
     memcpy(f->h, m->h, rows * n * sizeof *f->h);
+    if (f->smoother)
+        imki_smoother_update(f->smoother, m, f->gain, e->inverse);
     update_covariance(f, rows, m->h, f->gain, m->noise, m->cross);
     if (!m->cross && f->settings.rotation_sigma > 0.0)
         update_cross(f, m);
@@ -271,6 +274,8 @@ imk_aid_verdict imki_navigation_filter_measure(imk_navigation_filter *f, size_t 
     double test = solved ? squared(m, e.inverse) : (double)INFINITY;
     const bool fits = test <= f->limit[m->rows - 1];
     note_innovation(f, m, &e, test, fits);
+    if (m->compare)
+        return fits ? IMK_AID_USED : IMK_AID_REFUSED;
     if (!fits && !(solved && recovers(f, kind, m, &e, &test))) {
         refuse(f, counts);
         return IMK_AID_REFUSED;

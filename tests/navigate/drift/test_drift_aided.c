@@ -198,6 +198,7 @@ static void test_riccati(void **state)
     settings.aid_count = 3;
     settings.time = &time;
     settings.time_count = 1;
+    settings.attitude_errors = IMK_ATTITUDE_EARTH;
     imk_drift_analysis *analysis = analyse(&model, &settings);
     for (int i = 0; i < 9; i++) {
         CHECK_RELATIVE(one_sigma(&analysis->believed[0], i), riccati_after[i], 1e-9);

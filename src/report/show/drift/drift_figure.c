@@ -107,9 +107,12 @@ static double variance(const imk_drift_moments *m)
     return m->covariance[0][0] + m->covariance[1][1];
 }
 
+/* Of what the terms have by themselves: what correlations add or take is of no single one. */
 static double share_at(const imk_drift_analysis *a, size_t source, size_t t)
 {
-    const double total = variance(&a->total[t]);
+    double total = variance(&a->total[t]);
+    for (size_t k = 0; k < a->cross_count; k++)
+        total -= variance(&a->cross[k].moments[t]);
     return total > 0 ? variance(&a->contribution[source * a->time_count + t]) / total : 0;
 }
 

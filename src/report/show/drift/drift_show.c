@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Drift as a result: how the error grows, and which terms cause it. */
 #include "drift_show_internal.h"
+#include "unstated_show_internal.h"
 
 #include "report/result_internal.h"
 
@@ -83,7 +84,18 @@ static void show_budget_data(const imk_drift_case *one, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_case(const imk_drift_models *r, const imk_drift_case *one, imk_result *result)
+/* What was assumed of the model of a case. */
+static const imk_unstated *assumed_of(const imk_drift_models *r, const imk_drift_shown *shown,
+                                      const imk_drift_case *one)
+{
+    size_t m = 0;
+    while (r->model[m] != one->model)
+        m++;
+    return shown->assumed ? &shown->assumed[m] : NULL;
+}
+
+static void show_case(const imk_drift_models *r, const imk_drift_shown *shown,
+                      const imk_drift_case *one, imk_result *result)
 {
     static const char *const validity[] = {"linear", "rough", "no_position"};
     const imk_drift_times *times = r->times;
@@ -107,7 +119,10 @@ static void show_case(const imk_drift_models *r, const imk_drift_case *one, imk_
     imk_result_end(result);
     imk_result_quantity(result, "budget_time", times->time[one->time], "s");
     show_budget_data(one, result);
+    imk_result_number(result, "correlation_share", one->correlation_share);
     imki_show_texts(result, "omitted", one->analysis->omitted_count, one->analysis->omitted);
+    imki_show_missing_data(one->missing_count, one->missing, result);
+    imki_show_assumed_data(assumed_of(r, shown, one), result);
     imk_result_end(result);
 }
 
@@ -122,10 +137,16 @@ static void show_inputs(const imk_drift_models *r, const imk_drift_shown *shown,
     imk_result_text(result, "vertical",
                     imk_drift_vertical(s) == IMK_VERTICAL_FREE ? "free" : "slaved");
     imk_result_text(result, "aligned", s->alignment == IMK_ALIGNED_SELF ? "self" : "given");
+    imk_result_text(result, "attitude_errors",
+                    s->attitude_errors == IMK_ATTITUDE_EARTH ? "earth" : "local");
     imk_result_array(result, "initial_sigma");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
         imk_result_quantity(result, NULL, s->initial_sigma[i], units[i / 3]);
     imk_result_end(result);
+    if (s->gravity_deflection > 0) {
+        imk_result_quantity(result, "gravity_deflection", s->gravity_deflection, "m/s^2");
+        imk_result_quantity(result, "gravity_distance", s->gravity_distance, "m");
+    }
     if (!r->settings.drift.motion) {
         imk_result_quantity(result, "latitude", s->latitude, "rad");
         imk_result_quantity(result, "height", s->height, "m");
@@ -147,7 +168,7 @@ static void show_data(const imk_drift_models *r, const imk_drift_shown *shown, i
     imk_result_object(result, "result");
     imk_result_array(result, "models");
     for (size_t c = 0; c < r->case_count; c++)
-        show_case(r, &r->cases[c], result);
+        show_case(r, shown, &r->cases[c], result);
     imk_result_end(result);
     if (r->found)
         show_runs_data(r, result);
@@ -169,13 +190,16 @@ static void conditions_of(const imk_drift_models *r, const char *motion, imki_te
                       s->latitude < 0 ? "south" : "north");
     imki_text_put(text, "; ");
     imki_drift_aids_words(r, text);
-    imki_text_add(text, "%sattitude %s at the start, height %s.", s->aid_count > 0 ? "; " : "",
+    imki_text_add(text, "%sattitude %s at the start, height %s.%s", s->aid_count > 0 ? "; " : "",
                   s->alignment == IMK_ALIGNED_SELF ? "found by the unit itself"
                   : s->initial_sigma[6] + s->initial_sigma[7] + s->initial_sigma[8] > 0 ? "given"
                                                                                         : "true",
                   imk_drift_vertical(s) == IMK_VERTICAL_SLAVED ? "held by other means"
                   : s->vertical == IMK_VERTICAL_FREE           ? "free"
-                                                               : "from the aids");
+                                                               : "from the aids",
+                  s->attitude_errors == IMK_ATTITUDE_EARTH
+                      ? " Tilt and heading are errors against Earth-fixed axes."
+                      : "");
 }
 
 static void show_title(const imk_drift_models *r, const imk_drift_shown *shown, imk_result *result)
@@ -216,6 +240,26 @@ static void show_deciding(const imk_drift_models *r, imk_result *result)
 
 /* ---- all ---- */
 
+/* What stands in place of what is not stated, and what is missing. */
+static void show_unstated(const imk_drift_models *r, const imk_drift_shown *shown,
+                          imk_result *result)
+{
+    if (shown->assumed)
+        imk_result_gap(result);
+    for (size_t m = 0; m < r->model_count && shown->assumed; m++)
+        imki_show_assumed(&shown->assumed[m], r->name[m], result);
+    for (size_t c = 0; c < r->case_count; c++) {
+        const imk_drift_case *one = &r->cases[c];
+        if (one->missing_count == 0)
+            continue;
+        imk_result_line(result,
+                        "\nThe figures of %s are lower bounds. With what is typical of its "
+                        "class, these would have a part in the mean square of an error:",
+                        one->label);
+        imki_show_missing(one->missing_count, one->missing, result);
+    }
+}
+
 /* The page shows the shares too; a plot of letters has no shades for them. */
 static void show_figure(const imk_drift_models *r, imk_result *result)
 {
@@ -235,6 +279,7 @@ void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *shown, imk
                                                    : "Against time");
     imk_result_for(result, IMK_FOR_BOTH);
     imki_drift_show_growth(r, result);
+    show_unstated(r, shown, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (r->model_count > 1)
         show_deciding(r, result);

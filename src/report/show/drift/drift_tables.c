@@ -60,10 +60,10 @@ static void show_one(const imk_drift_models *r, const imk_drift_case *one, imk_r
     const bool is_free = imk_drift_vertical(&r->settings.drift) == IMK_VERTICAL_FREE;
     const imk_drift_moments *believed = one->analysis->believed;
     imk_table *table = begin_table(result, is_free ? 0x7FEU : 0x1FEU);
-    if (is_free)
-        imk_table_row(table, "time\tCEP\t\tR95\tDRMS\theight\tvelocity\tclimb\ttilt\theading");
-    else
-        imk_table_row(table, "time\tCEP\t\tR95\tDRMS\tvelocity\ttilt\theading");
+    imk_table_row(table, "%s\tCEP\t\tR95\tDRMS",
+                  one->missing_count > 0 ? "at least, after" : "time");
+    imk_table_add(table,
+                  is_free ? "height\tvelocity\tclimb\ttilt\theading" : "velocity\ttilt\theading");
     if (believed)
         imk_table_add(table, "CEP believed");
     for (size_t k = 0; k < r->times->row_count; k++) {
@@ -100,8 +100,11 @@ static void show_both(const imk_drift_models *r, imk_result *result)
     static const imk_drift_requirement shown[] = {IMK_REQUIRED_CEP, IMK_REQUIRED_R95,
                                                   IMK_REQUIRED_VELOCITY, IMK_REQUIRED_HEADING};
     imk_table *table = begin_table(result, 0x1FEU);
-    imk_table_row(table, "time\tCEP before\tafter\tR95 before\tafter\tvelocity before\tafter\t"
-                         "heading before\tafter");
+    imk_table_row(table,
+                  "%s\tCEP before\tafter\tR95 before\tafter\tvelocity before\tafter\t"
+                  "heading before\tafter",
+                  r->cases[0].missing_count + r->cases[1].missing_count > 0 ? "at least, after"
+                                                                            : "time");
     for (size_t k = 0; k < r->times->row_count; k++) {
         const size_t t = r->times->row[k];
         const imk_drift_figures *f[2] = {&r->cases[0].figures[t], &r->cases[1].figures[t]};
@@ -120,7 +123,8 @@ static void show_several(const imk_drift_models *r, imk_result *result)
     imk_table *table = begin_table(result, (1U << (1 + r->case_count)) - 2);
     imk_table_row(table, "CEP after");
     for (size_t c = 0; c < r->case_count; c++)
-        imk_table_add(table, "%.30s", r->cases[c].label);
+        imk_table_add(table, "%.30s%s", r->cases[c].label,
+                      r->cases[c].missing_count > 0 ? ", at least" : "");
     for (size_t k = 0; k < r->times->row_count; k++) {
         const size_t t = r->times->row[k];
         begin_row(r, table, r->times->time[t], IMK_DRIFT_LINEAR);
@@ -176,6 +180,9 @@ static void show_shares(const imk_drift_models *r, const imk_drift_case *one, im
         imk_table_add(table, "< 0.1 %%");
     else if (rest_count > 0)
         imk_table_add(table, "%.1f %%", 100 * rest);
+    if (fabs(one->correlation_share) >= 0.0005)
+        imk_table_row(table, "correlation of calibrated values\t%.1f %%",
+                      100 * one->correlation_share);
 }
 
 /* The moments of a source, or of all sources together (index after the last), if its shift is at

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What makes figures of drift doubtful. */
 #include "drift_show_internal.h"
+#include "unstated_show_internal.h"
 
 #include "report/result_internal.h"
 
@@ -42,6 +43,19 @@ static void warn_of_omitted(const imk_drift_case *one, imk_verdict *v)
         warn(v, "omitted",
              "%s: the linear theory leaves out %.239s; --monte-carlo includes everything that "
              "needs no temperature",
+             one->label, list.bytes);
+    free(list.bytes);
+}
+
+/* Figures that something material is missing from. */
+static void warn_of_missing(const imk_drift_case *one, imk_verdict *v)
+{
+    imki_text list = {.bytes = NULL};
+    imki_missing_names(one->missing_count, one->missing, &list);
+    if (list.size > 0)
+        warn(v, "lower_bound",
+             "%s: the figures are lower bounds, because the model does not state %.500s; state "
+             "them, 0 where they are 0, or assume what is typical with --assume-class own",
              one->label, list.bytes);
     free(list.bytes);
 }
@@ -122,6 +136,7 @@ imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result)
     for (size_t c = 0; c < r->case_count; c++) {
         if (c == 0 || r->cases[c].model != r->cases[c - 1].model)
             warn_of_omitted(&r->cases[c], &v);
+        warn_of_missing(&r->cases[c], &v);
         warn_of_range(r, &r->cases[c], &v);
     }
     if (r->found)
