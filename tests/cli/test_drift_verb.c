@@ -514,6 +514,9 @@ static void test_unstated_of_a_static_log(void **state)
     json_decref(document);
     assert_int_equal(run("$I grade a.yaml"), 0);
     check_contains(out, "a: at best ", out);
+    sweep();
+}
+
 /* Times count from the end of the aids; data names the aids; what is asked without aids, or without
  * their end, is refused with what to add. */
 static void test_aids(void **state)
