@@ -27,7 +27,7 @@ static int parse_attitude(const char *text, imk_navigate_log_settings *s)
     return -1;
 }
 
-/* As stated, or, with an aid, not. */
+/* Unless it is said, where nothing else measures it. */
 static bool holds_height(const navigate_options *o)
 {
     return o->vertical < 0 ? !o->aid : o->vertical == 0;

@@ -53,9 +53,8 @@ typedef struct imk_filter_tuning_settings {
      * The bias known is held over a window, as a filter's mean does over times much shorter. */
     double correlation_time;
     /** False (default): the bias known is that of the terms of bias. True: it is the mean of all
-     *  errors of the readings that are not fast noise or of the clock, as a filter with updates
-     * learns it: a scale factor on gravity, for example, counts only as far as the attitude
-     * changes. */
+     *  errors of the readings but fast noise and those of the clock, as a filter with updates
+     *  learns it: a scale factor on gravity counts only as far as the attitude changes. */
     bool learned;
     bool compensated;   /**< as in imk_drift_settings, without correlations of the model */
     bool per_axis;      /**< numbers of each axis, not of a triad; default false */

@@ -24,6 +24,8 @@ typedef enum aid_word {
     UNTIL,
     HORIZONTAL,
     ARM,
+    SPEED,
+    OVER,
     WORDS
 } aid_word;
 
@@ -42,6 +44,8 @@ static const char *const words[WORDS] = {
     [UNTIL] = "until",
     [HORIZONTAL] = "horizontal",
     [ARM] = "arm",
+    [SPEED] = "speed",
+    [OVER] = "over",
 };
 
 static const char *const names[] = {"gnss",    "gps",     "rtk",          "barometer",
@@ -129,11 +133,11 @@ static imk_status read_quantity(const token *behind, const char **at, const char
     imk_error reason;
     const imk_status status = imk_quantity_parse(begin, end, dimension, numbers, q->value, q->sigma,
                                                  &q->count, NULL, &reason);
-    if (status == IMK_OK && (q->count == 1 || q->count == numbers))
+    if (status == IMK_OK && q->count > 0)
         return IMK_OK;
     char expected[160];
     snprintf(expected, sizeof expected, "%s with a unit of %s, such as %s",
-             numbers > 1 ? "one number or three" : "a number", imk_dimension_name(dimension),
+             numbers > 1 ? "one to three numbers" : "a number", imk_dimension_name(dimension),
              imk_dimension_examples(dimension));
     const token value = {begin, (size_t)(end - begin), false};
     if (value.length == 0)
@@ -150,6 +154,7 @@ typedef struct reading {
     imk_aid *aid;
     size_t count;
     double correlation[IMK_AIDS_MAX]; /* of each; 0: none of its own */
+    bool sized[IMK_AIDS_MAX];         /* its correlated_sigma is stated */
     double interval, from, until, all;
     quantity arm;
     bool has_arm, horizontal;
@@ -164,6 +169,18 @@ static bool take_second(const char **at, const char *second)
         return false;
     *at = ahead;
     return true;
+}
+
+/* One number is for all axes, of an odometer for the way ahead; of two, the second is for the
+ * vertical, of an odometer for the other ways. `rest` is for axes that are not named. */
+static void put_sigmas(imk_aid_kind kind, const quantity *q, double rest, double sigma[3])
+{
+    const bool odometer = kind == IMK_AID_ODOMETER;
+    for (size_t i = 0; i < imk_aid_axes(kind); i++)
+        sigma[i] = q->count == 3   ? q->value[i]
+                   : q->count == 2 ? q->value[odometer ? i > 0 : i > 1]
+                   : odometer && i ? rest
+                                   : q->value[0];
 }
 
 static imk_status add_aid(reading *r, int kind, token t, const char **at, imk_error *error)
@@ -181,38 +198,73 @@ static imk_status add_aid(reading *r, int kind, token t, const char **at, imk_er
     const imk_status status = read_quantity(&t, at, imk_aid_unit(aid->kind), axes, &q, error);
     if (status != IMK_OK)
         return status;
-    for (size_t i = 0; i < axes; i++)
-        if (q.count > 1 || i == 0 || kind != IMK_AID_ODOMETER)
-            aid->sigma[i] = q.value[q.count > 1 ? i : 0];
+    put_sigmas(aid->kind, &q, (double)INFINITY, aid->sigma);
     if (r->horizontal && axes > 1)
         aid->sigma[2] = (double)INFINITY;
     r->horizontal = false;
+    r->sized[r->count] = false;
     r->correlation[r->count++] = 0.0;
     return IMK_OK;
+}
+
+/* Is "over" the word that ends the quantity here? */
+static bool leads_to_over(const char *at)
+{
+    for (;;) {
+        const token t = next_token(&at);
+        if (t.length == 0 || t.behind_comma || word_of(&t) >= 0)
+            return t.length > 0 && !t.behind_comma && word_of(&t) == OVER;
+    }
+}
+
+/* "2 m over 60 s", of the aid named last. */
+static imk_status take_size(reading *r, token t, const char **at, quantity *time, imk_error *error)
+{
+    quantity q;
+    if (r->count == 0 || t.behind_comma)
+        return refuse(
+            error, IMK_ERROR_SYNTAX, &t, "with a size follows no quantity",
+            "it behind what is measured, such as \"position 1 m correlated 2 m over 60 s\"");
+    imk_aid *aid = &r->aid[r->count - 1];
+    imk_status status =
+        read_quantity(&t, at, imk_aid_unit(aid->kind), imk_aid_axes(aid->kind), &q, error);
+    if (status != IMK_OK)
+        return status;
+    put_sigmas(aid->kind, &q, 0.0, aid->correlated_sigma);
+    for (int i = 0; i < 3; i++)
+        if (!isfinite(aid->sigma[i]))
+            aid->correlated_sigma[i] = 0.0;
+    r->sized[r->count - 1] = true;
+    const token over = next_token(at);
+    return read_quantity(&over, at, "s", 1, time, error);
 }
 
 static imk_status take_word(reading *r, int word, token t, const char **at, imk_error *error)
 {
     quantity q;
     imk_status status = IMK_OK;
-    if (word <= ZERO)
-        return add_aid(r, word, t, at, error);
+    if (word <= ZERO || word == SPEED)
+        return add_aid(r, word == SPEED ? IMK_AID_ODOMETER : word, t, at, error);
     if (word == HORIZONTAL) {
         r->horizontal = true;
         return IMK_OK;
     }
-    if (word == ARM)
-        return refuse(error, IMK_ERROR_SYNTAX, &t, "is not a word of an aid", "\"lever arm\"");
+    if (word == ARM || word == OVER)
+        return refuse(error, IMK_ERROR_SYNTAX, &t, "is not a word of an aid",
+                      word == ARM ? "\"lever arm\"" : "\"correlated 2 m over 60 s\"");
     if (word == LEVER) {
         const token behind = take_second(at, "arm") ? (token){*at, 0, false} : t;
         r->has_arm = true;
         status = read_quantity(&behind, at, "m", 3, &r->arm, error);
         if (status == IMK_OK && r->arm.count != 3)
-            status = refuse(error, IMK_ERROR_SYNTAX, &t, "has one number",
+            status = refuse(error, IMK_ERROR_SYNTAX, &t, "has not three numbers",
                             "three numbers: along body x, y and z");
         return status;
     }
-    status = read_quantity(&t, at, word == AT ? "Hz" : "s", 1, &q, error);
+    if (word == CORRELATED && leads_to_over(*at))
+        status = take_size(r, t, at, &q, error);
+    else
+        status = read_quantity(&t, at, word == AT ? "Hz" : "s", 1, &q, error);
     if (status == IMK_OK && !(q.value[0] > 0.0 && isfinite(q.value[0])))
         status = refuse(error, IMK_ERROR_RANGE, &t, "has no positive number", "a number above 0");
     if (status != IMK_OK)
@@ -243,7 +295,7 @@ static imk_status finish(reading *r, imk_error *error)
         aid->until = r->until;
         aid->correlation_time = time;
         for (int i = 0; i < 3; i++) {
-            if (time > 0.0 && isfinite(aid->sigma[i])) {
+            if (time > 0.0 && isfinite(aid->sigma[i]) && !r->sized[k]) {
                 aid->correlated_sigma[i] = aid->sigma[i];
                 aid->sigma[i] *= IMK_AID_TEXT_WHITE;
             }
