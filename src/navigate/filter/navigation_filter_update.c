@@ -41,12 +41,12 @@ static void times_measured(const imk_navigation_filter *f, const double *a, size
                            const double *h, double *out)
 {
     const size_t n = f->states;
-    memset(out, 0, n * rows * sizeof *out);
-    for (size_t r = 0; r < rows; r++)
-        for (size_t k = 0; k < n; k++) {
-            const double factor = h[r * n + k];
-            for (size_t i = 0; i < n && factor != 0.0; i++)
-                out[i * rows + r] += factor * a[i * n + k];
+    for (size_t i = 0; i < n; i++)
+        for (size_t r = 0; r < rows; r++) {
+            double sum = 0.0;
+            for (size_t k = 0; k < n; k++)
+                sum += a[i * n + k] * h[r * n + k];
+            out[i * rows + r] = sum;
         }
 }
 
@@ -223,9 +223,8 @@ static void update_cross(imk_navigation_filter *f, const imki_measurement *m)
 static void correct(imk_navigation_filter *f, const imki_measurement *m, expectation *e)
 {
     const size_t n = f->states, rows = m->rows;
-    double x[STATES_MAX];
+    double x[STATES_MAX] = {0};
     for (size_t i = 0; i < n; i++) {
-        x[i] = 0.0;
         for (size_t r = 0; r < rows; r++) {
             double sum = 0.0;
             for (size_t q = 0; q < rows; q++)

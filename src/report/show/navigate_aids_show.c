@@ -74,7 +74,7 @@ static void show_outage(const imk_navigate_log *n, const imk_navigate_aid *a, im
     const size_t axes = imk_aid_axes(a->aid.kind);
     char text[160] = "";
     size_t used = 0;
-    for (size_t i = 0; i < axes && used < sizeof text; i++) {
+    for (size_t i = 0; i < AXES && i < axes && used < sizeof text; i++) {
         if (isnan(a->last_off[i]))
             continue;
         const double scale = angle ? degree : 1.0;
