@@ -40,8 +40,8 @@ PUBLIC = {
     "compensate": "compensate firmware",
     "calibrate": "axes_mending calibration calibration_plan evaluate ferraris magnetometer procedure "
                  "reference_alignment repeatability static_detection test_record thermal",
-    "navigate": "aiding alignment drift navigate navigation_filter navigation_smoother "
-                "standing_start standstill",
+    "navigate": "aiding alignment drift filter_tuning navigate navigation_filter "
+                "navigation_smoother standing_start standstill",
     "physics": "instrument laboratory",  # and of each folder of src/physics
     "report": "report result show",
     "io": "campaign design_file figure_file firmware_file io log memory_limit model_file "

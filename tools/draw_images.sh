@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Draws the pictures of docs/physics and of docs/how-far-off.md with the command itself, into
-# docs/images:
+# Draws the pictures of docs/physics, docs/how-far-off.md and docs/filter-noise.md with the command
+# itself, into docs/images:
 #
 #     tools/draw_images.sh             all
 #     tools/draw_images.sh ring_laser  those whose name contains it
@@ -116,6 +116,15 @@ case drift-outage in
         "$imukit" drift tactical --initial-attitude "0.1 0.1 0.5 deg" --outage 10s,60s,300s \
             --aid "gnss position 1 m, velocity 0.05 m/s at 1 Hz until 600 s" \
             --plot "$images/drift-outage.svg" >"$images/.draw.log"
+        ;;
+esac
+
+case tune-tactical in
+    *"$only"*) # on the motion of its page
+        sed -n '/^cat > build.walk.yaml/,/^END/p' docs/filter-noise.md | sed '1d;$d' >"$images/.walk.yaml"
+        "$imukit" tune tactical "$images/.walk.yaml" --plot "$images/tune-tactical.svg" \
+            >"$images/.draw.log"
+        rm "$images/.walk.yaml"
         ;;
 esac
 

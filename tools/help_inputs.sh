@@ -51,6 +51,12 @@ allan)
     ;;
 spectrum) static static.csv && cp static.csv bench.csv ;;
 grade | drift) imukit devices tactical >model.yaml ;;
+tune)
+    imukit devices tactical >unit.yaml
+    printf 'imukit_motion: 1\nsteps: [hold 2 s, accelerate to 1.4 m/s at 1 m/s^2, %s]\n' \
+        'swing y 20 deg at 0.9 Hz for 12 s' >walk.yaml
+    imukit simulate unit.yaml --only bias.fixed --motion walk.yaml --rate 200Hz -o drive.csv
+    ;;
 convert)
     imukit devices tactical >model.yaml
     static raw.csv --accel-unit g

@@ -27,6 +27,12 @@ static int parse_attitude(const char *text, imk_navigate_log_settings *s)
     return -1;
 }
 
+/* Unless it is said, where nothing else measures it. */
+static bool holds_height(const navigate_options *o)
+{
+    return o->vertical < 0 ? !o->aid : o->vertical == 0;
+}
+
 static int parse_velocity(const navigate_options *o, imk_navigate_log_settings *s)
 {
     const char *text = o->velocity;
@@ -44,7 +50,7 @@ static int parse_velocity(const navigate_options *o, imk_navigate_log_settings *
     for (int i = 0; i < 3; i++)
         if (!(fabs(s->velocity[i]) <= 3e4))
             return command_misused("--velocity \"%s\": expected at most 30 km/s", text);
-    if (o->vertical == 0 && s->velocity[2] != 0)
+    if (holds_height(o) && s->velocity[2] != 0)
         return command_misused("--velocity \"%s\" goes up or down, but the height is held: add "
                                "--vertical free",
                                text);
@@ -169,7 +175,7 @@ static void take_numbers(const navigate_options *o, imk_navigate_log_settings *s
     s->method = o->method >= 0 ? (imk_alignment_method)o->method : s->method;
     s->still_velocity = o->still_velocity;
     s->still_rotation = isnan(o->still_rotation) ? 0.0 : o->still_rotation;
-    s->hold_height = o->vertical < 0 ? !o->aid : o->vertical == 0;
+    s->hold_height = holds_height(o);
     s->samples = (int)o->samples.value;
     s->interval = o->interval;
     s->standard_gravity = o->standard_gravity;

@@ -28,6 +28,7 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
     VERB(join)                                                                                     \
     VERB(physics)                                                                                  \
     VERB(drift)                                                                                    \
+    VERB(tune)                                                                                     \
     VERB(navigate)                                                                                 \
     VERB(merge)
 

@@ -33,6 +33,7 @@
 #include "imukit/executor.h"
 #include "imukit/ferraris.h"
 #include "imukit/filter_noise.h"
+#include "imukit/filter_tuning.h"
 #include "imukit/firmware.h"
 #include "imukit/fourier.h"
 #include "imukit/identify.h"

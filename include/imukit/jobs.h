@@ -32,5 +32,6 @@
 #include "imukit/show.h"
 #include "imukit/simulate_log.h"
 #include "imukit/spectrum_log.h"
+#include "imukit/tune_model.h"
 
 #endif

@@ -20,6 +20,7 @@
 #include "imukit/result.h"
 #include "imukit/spectrum_log.h"
 #include "imukit/technology_map.h"
+#include "imukit/tune_model.h"
 
 IMK_BEGIN_C
 
@@ -198,6 +199,11 @@ typedef struct imk_drift_shown {
 /** Show the growth of errors, budgets, runs, the answer to the requirement, and figures. */
 IMK_API void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *shown,
                             imk_result *result);
+/** Show the noise of a filter, how consistent it is, what makes the errors, and a figure. */
+IMK_API void imk_show_tune(const imk_tune_model *r, imk_result *result);
+/** Write why no constant noise describes the errors; "" where one does.
+ *  @param size  of `text` [bytes] */
+IMK_API void imk_tune_verdict(const imk_tune_model *r, char *text, size_t size);
 /** Show Monte Carlo runs alone. @param words  a description of the runs */
 IMK_API void imk_show_drift_runs(const imk_drift_models *r, const char *words, imk_result *result);
 /** @} */

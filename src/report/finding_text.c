@@ -362,6 +362,9 @@ static const struct message {
      "with the attitude given, the log begins with an acceleration of {0.3g} m/s^2: {1?}the unit "
      "of the accelerometers is probably {other}, not {name}{1!}the attitude, --axes or the unit of "
      "the accelerometers is wrong, or the log begins in motion"},
+    {"bias_beyond_model",
+     "at rest the gyros read {0.3g} deg/h beside the Earth's rotation, more than the biases of "
+     "{name} explain: a bias of that size is assumed; state it in the model"},
     {"start_turning",
      "the log begins turning at {0.3g} deg/s, which is no rest, and no velocity was given: "
      "navigation begins with velocity 0; add --velocity \"NORTH EAST DOWN m/s\""},

@@ -89,20 +89,17 @@ static imk_status start_terms(imki_channel *channel, imki_axis axis, double dt, 
     return imk_quantization_start(&channel->quantization, q, dt, random, stream);
 }
 
-static imk_status start_band_limit(imki_channel *channel, imki_axis axis, double part,
-                                   misfit *found)
+imk_status imki_band_limit_start(imki_band_limit *limit, const imk_triad *triad, int axis,
+                                 double part)
 {
-    imk_low_pass filter = {axis.triad->bandwidth.value[axis.axis],
-                           axis.triad->damping.value[axis.axis]};
+    imk_low_pass filter = {triad->bandwidth.value[axis], triad->damping.value[axis]};
     imki_stretch stretch;
-    if (filter.bandwidth == 0.0)
+    *limit = (imki_band_limit){.present = filter.bandwidth != 0.0};
+    if (!limit->present)
         return IMK_OK;
     const imk_status status = imki_low_pass_over(filter, part, &stretch);
-    *found = (misfit){"bandwidth", filter.bandwidth};
     if (status != IMK_OK)
         return status;
-    imki_band_limit *limit = &channel->band_limit;
-    limit->present = true;
     for (int i = 0; i < 2; i++) {
         limit->mean[i] = stretch.g[i] / part;
         for (int j = 0; j < 2; j++)
@@ -136,7 +133,9 @@ imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, 
     channel->resolution = axis.triad->resolution.value[axis.axis];
     channel->sensitivity = axis.triad->sensitivity.value[axis.axis];
     channel->zero_offset = axis.triad->zero_offset.value[axis.axis];
-    imk_status status = start_band_limit(channel, axis, dt / (double)substeps, &found);
+    imk_status status =
+        imki_band_limit_start(&channel->band_limit, axis.triad, axis.axis, dt / (double)substeps);
+    found = (misfit){"bandwidth", axis.triad->bandwidth.value[axis.axis]};
     if (status == IMK_OK)
         status = start_terms(channel, axis, dt, random, run, memory, &found);
     return status == IMK_OK ? IMK_OK : refuse(error, status, axis, found);
@@ -144,7 +143,7 @@ imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, 
 
 /* ---- the deterministic part ---- */
 
-static void limit_band(imki_band_limit *limit, size_t count, double *signal)
+void imki_limit_band(imki_band_limit *limit, size_t count, double *signal)
 {
     if (!limit->started) { /* as if the first input had lasted for ever */
         limit->x = signal[0];
@@ -197,7 +196,7 @@ static void respond_still(imki_channel *channel, const imk_distortion *distortio
     imki_distort_still(distortion->kernel, &distortion->axis[channel->sensor][channel->axis],
                        &exposure, rows / IMKI_CHUNK, out);
     if (channel->band_limit.present)
-        limit_band(&channel->band_limit, rows, out);
+        imki_limit_band(&channel->band_limit, rows, out);
 }
 
 void imki_channel_response(imki_channel *channel, const imk_distortion *distortion,
@@ -217,7 +216,7 @@ void imki_channel_response(imki_channel *channel, const imk_distortion *distorti
         imk_stimulus stimulus = later(&scene->stimulus[channel->stimulus], part + row * substeps);
         imk_distort(distortion, channel->sensor, channel->axis, &stimulus, count, signal);
         if (channel->band_limit.present)
-            limit_band(&channel->band_limit, count, signal);
+            imki_limit_band(&channel->band_limit, count, signal);
         for (size_t k = 0; k < now && substeps > 1; k++) {
             double sum = parts[k * substeps];
             for (size_t j = 1; j < substeps; j++)
@@ -253,7 +252,7 @@ void imki_channel_responses(size_t count, imki_channel *const *channels,
     imki_distort_alike(distortions[0]->kernel, count, axes, &exposure, rows / IMKI_CHUNK, out);
     for (size_t i = 0; i < count; i++)
         if (channels[i]->band_limit.present)
-            limit_band(&channels[i]->band_limit, rows, out[i]);
+            imki_limit_band(&channels[i]->band_limit, rows, out[i]);
 }
 
 /* ---- noise and output ---- */

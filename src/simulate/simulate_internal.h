@@ -101,6 +101,11 @@ typedef struct imki_band_limit {
     double x, v;
 } imki_band_limit;
 
+/* Of an axis, over parts of this length; not present where it has no bandwidth. */
+imk_status imki_band_limit_start(imki_band_limit *limit, const imk_triad *triad, int axis,
+                                 double part);
+void imki_limit_band(imki_band_limit *limit, size_t count, double *signal);
+
 /* The states of a stochastic term that this axis has. */
 typedef struct imki_channel_term {
     const imki_generator *generator;

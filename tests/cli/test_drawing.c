@@ -23,6 +23,7 @@ static const struct {
     {"$I navigate faces.csv -p '48 deg, 11 deg, 500 m' --attitude '0 0 0 deg'", "pr"},
     {"$I drift tactical -d 10s -r 1Hz", "pr"},
     {"$I grade tactical", "pr"},
+    {"$I tune tactical turn.yaml -r 20Hz --from 0.1s --to-time 1s --windows 1", "pr"},
     {"$I physics rate_gyro -d 20ms", "pr"},
     {"$I physics shell_gyro --view 1", "p"},
     {"$I physics shell_gyro", "a"},
@@ -53,6 +54,7 @@ static int make_inputs(void **state)
     }
     put("table.csv", "reference [deg/s],reading [deg/s]\n-10,-10.1\n0,0.01\n10,10.02\n10,10.01\n"
                      "0,0\n-10,-10\n");
+    put("turn.yaml", "imukit_motion: 1\nsteps: [hold 4 s, turn 90 deg at 30 deg/s]\n");
     put("gnuplot.sh", "#!/bin/sh\nsleep 1000 &\necho $$ $! >\"$PID_FILE\"\nwait\n");
     if (fclose(one) != 0 || fclose(faces) != 0)
         return -1;
@@ -63,7 +65,7 @@ static int make_inputs(void **state)
 
 static int remove_inputs(void **state)
 {
-    run("rm -rf bin tmp one.csv two.csv faces.csv table.csv");
+    run("rm -rf bin tmp one.csv two.csv faces.csv table.csv turn.yaml");
     return tear_down(state);
 }
 

@@ -517,6 +517,8 @@ static void test_unstated_of_a_static_log(void **state)
     sweep();
 }
 
+/* ---- aids ------------------------------------------------------------------------------------ */
+
 /* Times count from the end of the aids; data names the aids; what is asked without aids, or without
  * their end, is refused with what to add. */
 static void test_aids(void **state)

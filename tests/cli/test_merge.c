@@ -6,8 +6,12 @@
 #include <signal.h>
 
 /* White noise alone: runs are quick. */
-static const char model[] = "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h)}}\n"
-                            "accel: {noise: {velocity_random_walk: 0.1 m/s/sqrt(h)}}\n";
+static const char model[] =
+    "imukit: 1\n"
+    "gyro: {bias: {repeatability: 0 deg/h}, " NO_OTHER_GYRO_TERM_THAN(
+        "0.3 deg/sqrt(h)") "}\n"
+                           "accel: {bias: {repeatability: 0 mg}, " NO_OTHER_ACCEL_TERM_THAN(
+                               "0.1 m/s/sqrt(h)") "}\n";
 
 #define DRIFT "$I drift m.yaml --duration 20s --seed 3 --monte-carlo 100 "
 

@@ -7,8 +7,12 @@
 #define IMUKIT_MPI_COMMAND ""
 #endif
 
-static const char model[] = "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h)}}\n"
-                            "accel: {noise: {velocity_random_walk: 0.1 m/s/sqrt(h)}}\n";
+static const char model[] =
+    "imukit: 1\n"
+    "gyro: {bias: {repeatability: 0 deg/h}, " NO_OTHER_GYRO_TERM_THAN(
+        "0.3 deg/sqrt(h)") "}\n"
+                           "accel: {bias: {repeatability: 0 mg}, " NO_OTHER_ACCEL_TERM_THAN(
+                               "0.1 m/s/sqrt(h)") "}\n";
 
 #define DRIFT " drift m.yaml --duration 20s --seed 3 --monte-carlo 100 "
 /* A rank that waits for another for ever would be a fault: it is given a minute. mpirun makes a

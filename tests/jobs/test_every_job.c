@@ -180,6 +180,32 @@ static imk_status grade(const imk_job *job)
     return status;
 }
 
+/* White noise alone is what a filter has, too: the fit is the model. */
+static imk_status tune(const imk_job *job)
+{
+    const double level[3] = {0};
+    imk_trajectory_piece piece;
+    imk_trajectory trajectory;
+    imk_tune_model_settings settings = imk_tune_model_default();
+    imk_tune_model *found;
+    CHECK_OK(imk_trajectory_standstill((imk_geodetic){0.8, 0.0, 0.0}, level, true, &piece,
+                                       &trajectory, NULL));
+    settings.tuning.motion[0].trajectory = &trajectory;
+    settings.tuning.duration[0] = 4;
+    settings.tuning.motion_count = 1;
+    settings.tuning.rate = RATE;
+    settings.tuning.to = 0.5;
+    settings.tuning.window_count = 1;
+    settings.run_count = 3;
+    const imk_status status = imk_tune_model_run(&unit, "unit", &settings, job, &found, NULL);
+    if (status == IMK_OK) {
+        CHECK_RELATIVE(found->tuning->answer[IMK_FILTER_FIT].parameters.white[0][0], 1e-5, 0.01);
+        assert_true(found->found[0].lower < found->found[0].upper);
+    }
+    imk_tune_model_free(found);
+    return status;
+}
+
 /* A pendulous servo under 1 g reads 1 g. */
 static imk_status physics(const imk_job *job)
 {
@@ -225,10 +251,10 @@ static imk_status calibrate(const imk_job *job)
 static const struct {
     const char *name;
     imk_status (*run)(const imk_job *job);
-} jobs[] = {{"simulate", simulate},  {"allan", allan},       {"spectrum", spectrum},
-            {"identify", identify},  {"navigate", navigate}, {"compensate", compensate},
-            {"drift", drift},        {"grade", grade},       {"physics", physics},
-            {"calibrate", calibrate}};
+} jobs[] = {{"simulate", simulate},   {"allan", allan},       {"spectrum", spectrum},
+            {"identify", identify},   {"navigate", navigate}, {"compensate", compensate},
+            {"drift", drift},         {"grade", grade},       {"physics", physics},
+            {"calibrate", calibrate}, {"tune", tune}};
 enum { JOBS = sizeof jobs / sizeof jobs[0] };
 
 static void test_results(void **state)

@@ -105,6 +105,31 @@ static void test_method_follows_the_model(void **state)
         }
 }
 
+/* A bias that the model does not state is told and taken, and one that it states is not told. */
+static void test_bias_beyond_the_model(void **state)
+{
+    (void)state;
+    static imk_model model, stated, truth;
+    imk_model_default(&model);
+    for (int i = 0; i < 3; i++) {
+        model.gyro.noise.white.value[i] = 1e-5;
+        model.accel.noise.white.value[i] = 1e-4;
+    }
+    stated = truth = model;
+    truth.gyro.bias.fixed.value[1] = 0.3 * degree;
+    stated.gyro.bias.repeatability.value[1] = 0.5 * degree;
+    model.gyro.bias.repeatability.value[1] = 1e-3 * degree;
+    for (int known = 0; known < 2; known++) {
+        imk_navigate_log_settings settings = settings_for(known ? &stated : &model);
+        settings.heading_given = true;
+        simulate(&truth, 2);
+        imk_navigate_log *n = navigate(&settings);
+        assert_int_equal(finds(n, "bias_beyond_model"), !known);
+        CHECK_CLOSE(n->end.gyro_bias.v[1], 0.3 * degree, 3e-6); /* noise: 6e-7 */
+        imk_navigate_log_free(n);
+    }
+}
+
 /* Without a model the readings say how large biases are: 0.3 of the Earth's rotation along the
  * vertical, and none across it, make 1.32 x 0.3/(sqrt(2) cos 45 deg) of heading. */
 static void test_doubt_without_model(void **state)
@@ -130,6 +155,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_method_follows_the_model),
+        cmocka_unit_test(test_bias_beyond_the_model),
         cmocka_unit_test(test_doubt_without_model),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -227,7 +227,7 @@ static void warn_of_rotation(imk_navigate_log *n, const start *s)
 void imki_navigate_check_given(imk_navigate_log *n)
 {
     const start s = look(n);
-    if (!n->settings.velocity_given && warn_of_motion(n, &s))
+    if (!n->settings.velocity_given && !n->settings.aids && warn_of_motion(n, &s))
         return;
     if (!warn_of_force(n, &s) && !warn_of_tilt(n, &s))
         warn_of_rotation(n, &s);

@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+static const double degree = 0.017453292519943295, hour = 3600.0;
+
 /* A heading known to less is not one that small angles describe: 11 deg. Gravity's turn in inertial
  * axes is lost then, and the tilt with it, while the mean force asks no gyro. */
 static const double coarse_heading = 0.2;
@@ -110,7 +112,12 @@ void imki_navigate_start_biases(imk_navigate_log *n, imk_navigation_filter *filt
         .time = n->record.dt * (double)n->first,
         .rotation_sigma = hypot(n->settings.still_rotation, imki_navigate_sway(n, n->first)),
         .heading_found = imki_navigate_north(n)};
-    imk_navigation_filter_stood(filter, &stood);
+    imk_navigation_filter_estimate estimate;
+    if (imk_navigation_filter_stood(filter, &stood))
+        return;
+    imk_navigation_filter_get(filter, &estimate);
+    imki_find(&n->findings, IMK_FINDING_WARNING, "bias_beyond_model", n->settings.model_name,
+              IMKI_NUMBERS(imk_vector3_norm(estimate.gyro_bias) / degree * hour));
 }
 
 /* Where the biases hide the Earth's rotation, the heading and they are one thing: what is known of

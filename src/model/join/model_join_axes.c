@@ -9,6 +9,7 @@
 
 #include "imukit/model_unstated.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* The sensor that an axis comes from. */
@@ -111,19 +112,24 @@ static imk_status copy_polynomial(const imki_join *join, const imki_field *field
     return IMK_OK;
 }
 
-static imk_status copy_warm_up_time(const imki_join *join, const imki_field *field, int sensor,
-                                    imk_triad *to, const origin *o, int *first, imk_error *error)
+/* A time that the triad has once, of the term to which it belongs: it binds where an axis has this
+ * term. */
+static imk_status copy_time(const imki_join *join, const imki_field *field, int sensor,
+                            imk_triad *to, const origin *o, int *first, imk_error *error)
 {
-    const imk_scalar time = o->triad->bias.warm_up_time;
-    const bool binds = o->triad->bias.warm_up_amplitude.value[o->row] != 0 ||
-                       o->triad->bias.warm_up_amplitude.sigma[o->row] != 0;
-    if (!binds && (*first >= 0 || time.value == 0))
+    const bool warm_up = field->offset == offsetof(imk_triad, bias.warm_up_time);
+    const imk_axes *size =
+        warm_up ? &o->triad->bias.warm_up_amplitude : &o->triad->noise.bias_instability;
+    const imk_scalar *time = (const void *)((const char *)o->triad + field->offset);
+    imk_scalar *joined = (void *)((char *)to + field->offset);
+    const bool binds = size->value[o->row] != 0 || size->sigma[o->row] != 0;
+    if (!binds && (*first >= 0 || time->value == 0))
         return IMK_OK;
-    if (*first >= 0 && to->bias.warm_up_time.value != time.value)
+    if (*first >= 0 && joined->value != time->value)
         return imki_join_conflict(join, field->path[sensor], *first, o->part,
                                   "one time for all axes: it is one number of a model", error);
     *first = binds ? o->part : -1;
-    to->bias.warm_up_time = time;
+    *joined = *time;
     return IMK_OK;
 }
 
@@ -144,7 +150,7 @@ static imk_status copy_field(const imki_join *join, const imki_field *field, int
                                     : IMK_DENSITY_UNSTATED;
             break;
         case IMKI_SCALAR:
-            status = copy_warm_up_time(join, field, sensor, to, o, &first, error);
+            status = copy_time(join, field, sensor, to, o, &first, error);
             break;
         case IMKI_POLYNOMIAL:
             status = copy_polynomial(join, field, sensor, to, o, &first, error);

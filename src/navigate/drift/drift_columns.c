@@ -23,11 +23,9 @@ static double lever_effect(const imk_motion_state *state, int axis, int part)
            imk_vector3_cross(w, imk_vector3_cross(w, r)).v[axis];
 }
 
-/* What the driver is multiplied by in the reading of the column's axis. */
-static double factor(const imki_drift_column *column, const imki_drift_node *node)
+double imki_drift_factor(const imki_drift_column *column, const imk_motion_state *state)
 {
     static const int second[6] = {0, 1, 2, 1, 2, 0}; /* fx^2 fy^2 fz^2 fx fy, fy fz, fz fx */
-    const imk_motion_state *state = &node->state;
     const double *f = state->specific_force.v, *w = state->angular_rate.v;
     const bool gyro = column->sensor == IMK_GYRO;
     const int part = column->part;
@@ -146,7 +144,7 @@ void imki_drift_column_at(const imki_drift_column *column, const imki_drift_node
         put(node->c_eb, node->force_slope.v, raw + 3);
         break;
     default:
-        body[column->axis] = factor(column, node);
+        body[column->axis] = imki_drift_factor(column, state);
         put(node->c_eb, body, raw + (column->sensor == IMK_GYRO ? 0 : 3));
     }
     imki_matrix9_apply(&node->keep, raw, g);

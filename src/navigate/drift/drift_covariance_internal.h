@@ -14,6 +14,7 @@
 #include "drift_settings_internal.h"
 
 #include "imukit/drift.h"
+#include "noise/noise_terms_internal.h"
 
 enum {
     IMKI_DRIFT_MOMENTS = 6, /* powers of time in a column over a step */
@@ -118,6 +119,10 @@ typedef struct imki_drift_element {
     double covariance[2][2]; /* of the driver's states, when noise */
     double *cross[2];        /* of these with x */
     int correlated;          /* place in the model's correlation, from 1; 0: independent */
+    /* Of a stochastic term: its row and its process, for who takes it sample by sample; else NULL
+     */
+    const imki_noise_term *term;
+    imki_process process;
 } imki_drift_element;
 
 typedef struct imki_drift_part {
@@ -212,7 +217,10 @@ typedef struct imki_drift_step {
 } imki_drift_step;
 
 void imki_drift_node_at(imki_drift_walk *walk, double time, imki_drift_node *node);
-/* drift_columns.c: a column at an instant */
+/* drift_columns.c: what a driver is multiplied by in the reading of the column's axis, given rate,
+ * force and angular acceleration; 1 for columns that enter otherwise. */
+double imki_drift_factor(const imki_drift_column *column, const imk_motion_state *state);
+/* A column at an instant. */
 void imki_drift_column_at(const imki_drift_column *column, const imki_drift_node *node,
                           double g[9]);
 /* The vector c of a column that enters as the derivative of c s: then x - c s is propagated, with

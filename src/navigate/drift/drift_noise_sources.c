@@ -73,9 +73,10 @@ static void add_reading(imki_drift_plan *plan, int sensor, int axis, double size
         plan->element[plan->element_count - 1].state[0] = size;
 }
 
-static void add_process(imki_drift_plan *plan, const imki_process *p, int sensor, int axis,
-                        double dt)
+static void add_process(imki_drift_plan *plan, const imki_noise_term *term, const imki_process *p,
+                        int sensor, int axis, double dt)
 {
+    const size_t before = plan->element_count;
     const imki_drift_column one = imki_drift_column_of(IMKI_COLUMN_ONE, sensor, axis, 0);
     const imki_drift_column *column = &one;
     if (p->kind == IMKI_PROCESS_READING) {
@@ -92,6 +93,10 @@ static void add_process(imki_drift_plan *plan, const imki_process *p, int sensor
                                          : p->kind == IMKI_PROCESS_WALK ? imki_driver_walk()
                                                                         : imki_driver_white();
         imki_drift_add_noise(plan, IMKI_ELEMENT_NOISE, column, &driver, share * p->size * p->size);
+    }
+    for (size_t i = before; plan->element && i < plan->element_count; i++) {
+        plan->element[i].term = term;
+        plan->element[i].process = *p;
     }
 }
 
@@ -113,7 +118,7 @@ static void add_element(imki_drift_plan *plan, const imki_noise_term *term, cons
     for (place.axis = 0; place.axis < 3; place.axis++) {
         const size_t count = strength[place.axis] != 0.0 ? term->processes(place, dt, process) : 0;
         for (size_t i = 0; i < count; i++)
-            add_process(plan, &process[i], sensor, place.axis, dt);
+            add_process(plan, term, &process[i], sensor, place.axis, dt);
     }
 }
 

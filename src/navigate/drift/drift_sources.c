@@ -204,7 +204,7 @@ static void add_initial(imki_drift_plan *plan, const imk_drift_settings *setting
 size_t imki_drift_drivers_max(const imk_model *model, const imk_drift_settings *settings)
 {
     const imk_noise *noise[2] = {&model->gyro.noise, &model->accel.noise};
-    /* white, constant, walk, ramp, gravity, two warm-ups */
+    /* white, constant, walk, ramp, gravity, two warm-ups; two correlation times of flicker noise */
     size_t count = 2 * IMK_FLICKER_STAGES + 7 + settings->aid_count;
     for (int t = 0; t < IMKI_NOISE_TERMS; t++)
         for (int i = 0; i < 2 && imki_noise_terms[t]->count; i++)

@@ -41,7 +41,7 @@ static int count_held(const filter *f)
         const imk_identification r = identify_values(true, N, x);
         const imk_estimate *white = &r.term[IMK_NOISE_WHITE];
         assert_true(white->present);
-        assert_true(white->upper < 1.2 && white->lower > 0.85);
+        assert_true(white->upper < 1.2 && white->lower > 0.84);
         held += white->lower <= 1.02 && 0.98 <= white->upper;
     }
     return held;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit navigate --aid: a simulated drive with a GNSS receiver, the columns of tables, clocks, and
  * what is refused. */
-#include "run_command.h"
+#include "cli/run_command.h"
 
 #define PLACE "--position '45 deg, 7 deg, 300 m'"
 #define REST "$I navigate rest.csv --position '45 deg, 10 deg, 100 m' --attitude '0 0 0 +- 1 deg' "

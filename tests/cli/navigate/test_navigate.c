@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit navigate: exact output, refusals that name what to add, and a real log of a parked vehicle
  * with laser gyros, whose alignment and drift are known from independent estimators. */
-#include "run_command.h"
+#include "cli/run_command.h"
 
 #include "imukit/earth.h"
 

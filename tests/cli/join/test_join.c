@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit join: from designs and calibrations to a unit that is navigated, and what is refused. */
-#include "run_command.h"
+#include "cli/run_command.h"
 
 #include "imukit/model_file.h"
 
