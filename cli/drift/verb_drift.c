@@ -224,8 +224,8 @@ static int show(const work *w)
     const drift_options *o = w->o;
     const imk_drift_models *r = w->r;
     imk_result *result = show_begin("drift"), *model = r->answer ? model_data(w) : NULL;
-    const imk_drift_shown shown = {w->scene.motion ? o->motion : NULL, o->seed.value,
-                                   imk_drift_verdict(r, result), model,
+    const imk_drift_shown shown = {w->scene.motion ? o->motion : NULL,  o->seed.value,
+                                   imk_drift_verdict(r, result),        model,
                                    o->assume_class ? w->assumed : NULL, o->filter_model};
     for (size_t i = 0; i < shown.verdict.count; i++)
         command_warn(shown.verdict.message[i].code, "%s", shown.verdict.message[i].text);

@@ -50,6 +50,23 @@ static void test_correlated(void **state)
     CHECK_RELATIVE(aid[1].sigma[0], 0.1, 1e-15);
 }
 
+/* White noise and process, each with its size. */
+static void test_correlated_beside_white(void **state)
+{
+    (void)state;
+    imk_aid aid[IMK_AIDS_MAX];
+    assert_int_equal(
+        parse("position 1 m correlated 2 2 3 m over 60 s, speed 0.1 m/s, correlated 5 s", aid), 2);
+    for (int i = 0; i < 3; i++) {
+        CHECK_RELATIVE(aid[0].sigma[i], 1.0, 1e-15);
+        CHECK_RELATIVE(aid[0].correlated_sigma[i], i < 2 ? 2.0 : 3.0, 1e-15);
+    }
+    CHECK_RELATIVE(aid[0].correlation_time, 60.0, 1e-15);
+    assert_int_equal(aid[1].kind, IMK_AID_ODOMETER);
+    CHECK_RELATIVE(aid[1].sigma[0], 0.01, 1e-12);
+    CHECK_RELATIVE(aid[1].correlation_time, 5.0, 1e-15);
+}
+
 static void test_other_kinds(void **state)
 {
     (void)state;
@@ -92,6 +109,8 @@ static void test_messages(void **state)
         {"zero 1 m/s", "\"zero\"", "zero velocity"},
         {"at 1 Hz", "no quantity", "position"},
         {"", "no quantity", "position"},
+        {"position 1 m, correlated 2 m over 60 s", "\"correlated\"", "without a comma"},
+        {"position 1 m over 60 s", "\"over\"", "correlated"},
         {"position 0 m", "", "sigma above 0"},
         {"position -1 m", "", "sigma above 0"},
         {"position 1 m from 20 s until 10 s", "", "not before"},
@@ -115,6 +134,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_gnss),
         cmocka_unit_test(test_correlated),
+        cmocka_unit_test(test_correlated_beside_white),
         cmocka_unit_test(test_other_kinds),
         cmocka_unit_test(test_messages),
     };

@@ -24,6 +24,8 @@ typedef enum aid_word {
     UNTIL,
     HORIZONTAL,
     ARM,
+    OVER,
+    SPEED,
     WORDS
 } aid_word;
 
@@ -42,6 +44,8 @@ static const char *const words[WORDS] = {
     [UNTIL] = "until",
     [HORIZONTAL] = "horizontal",
     [ARM] = "arm",
+    [OVER] = "over",
+    [SPEED] = "speed",
 };
 
 static const char *const names[] = {"gnss",    "gps",     "rtk",          "barometer",
@@ -150,6 +154,7 @@ typedef struct reading {
     imk_aid *aid;
     size_t count;
     double correlation[IMK_AIDS_MAX]; /* of each; 0: none of its own */
+    bool stated[IMK_AIDS_MAX];        /* its correlated_sigma is stated */
     double interval, from, until, all;
     quantity arm;
     bool has_arm, horizontal;
@@ -187,7 +192,43 @@ static imk_status add_aid(reading *r, int kind, token t, const char **at, imk_er
     if (r->horizontal && axes > 1)
         aid->sigma[2] = (double)INFINITY;
     r->horizontal = false;
+    r->stated[r->count] = false;
     r->correlation[r->count++] = 0.0;
+    return IMK_OK;
+}
+
+/* Is the next word "over", behind a quantity? */
+static bool has_over(const char *at)
+{
+    for (;;) {
+        const token t = next_token(&at);
+        if (t.length == 0 || t.behind_comma)
+            return false;
+        if (word_of(&t) >= 0)
+            return word_of(&t) == OVER;
+    }
+}
+
+/* "correlated 2 m over 60 s", of the quantity before: beside its white noise. */
+static imk_status add_correlated(reading *r, token t, const char **at, imk_error *error)
+{
+    quantity q, time;
+    if (r->count == 0 || t.behind_comma)
+        return refuse(error, IMK_ERROR_SYNTAX, &t, "with a size belongs to one quantity",
+                      "write it right behind the quantity, without a comma");
+    imk_aid *aid = &r->aid[r->count - 1];
+    const size_t axes = imk_aid_axes(aid->kind);
+    imk_status status = read_quantity(&t, at, imk_aid_unit(aid->kind), axes, &q, error);
+    if (status != IMK_OK)
+        return status;
+    const token over = next_token(at);
+    status = read_quantity(&over, at, "s", 1, &time, error);
+    if (status != IMK_OK)
+        return status;
+    for (size_t i = 0; i < axes; i++)
+        aid->correlated_sigma[i] = isfinite(aid->sigma[i]) ? q.value[q.count > 1 ? i : 0] : 0.0;
+    r->stated[r->count - 1] = true;
+    r->correlation[r->count - 1] = time.value[0];
     return IMK_OK;
 }
 
@@ -195,14 +236,17 @@ static imk_status take_word(reading *r, int word, token t, const char **at, imk_
 {
     quantity q;
     imk_status status = IMK_OK;
-    if (word <= ZERO)
-        return add_aid(r, word, t, at, error);
+    if (word <= ZERO || word == SPEED)
+        return add_aid(r, word == SPEED ? (int)IMK_AID_ODOMETER : word, t, at, error);
+    if (word == CORRELATED && has_over(*at))
+        return add_correlated(r, t, at, error);
     if (word == HORIZONTAL) {
         r->horizontal = true;
         return IMK_OK;
     }
-    if (word == ARM)
-        return refuse(error, IMK_ERROR_SYNTAX, &t, "is not a word of an aid", "\"lever arm\"");
+    if (word == ARM || word == OVER)
+        return refuse(error, IMK_ERROR_SYNTAX, &t, "is not a word of an aid",
+                      word == ARM ? "\"lever arm\"" : "\"correlated 2 m over 60 s\"");
     if (word == LEVER) {
         const token behind = take_second(at, "arm") ? (token){*at, 0, false} : t;
         r->has_arm = true;
@@ -243,7 +287,7 @@ static imk_status finish(reading *r, imk_error *error)
         aid->until = r->until;
         aid->correlation_time = time;
         for (int i = 0; i < 3; i++) {
-            if (time > 0.0 && isfinite(aid->sigma[i])) {
+            if (time > 0.0 && isfinite(aid->sigma[i]) && !r->stated[k]) {
                 aid->correlated_sigma[i] = aid->sigma[i];
                 aid->sigma[i] *= IMK_AID_TEXT_WHITE;
             }
