@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The aids of the navigator and their end, from the options. */
 #include "drift_parts.h"
-
-#include "imukit/aid_text.h"
-#include "imukit/io.h"
+#include "shell/aid_option.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,15 +11,11 @@ static int read_aids(const option_texts *texts, drift_scene *s)
 {
     imk_drift_settings *settings = &s->settings;
     imk_aid aid[IMK_AIDS_MAX];
-    imk_error error;
     for (size_t t = 0; t < texts->count; t++) {
         size_t count;
-        if (imk_aid_parse(texts->text[t], aid, &count, &error) != IMK_OK) {
-            char text[700];
-            error.field[0] = '\0';
-            imk_error_text(&error, NULL, text, sizeof text);
-            return command_misused("--aid \"%s\": %s", texts->text[t], text);
-        }
+        const int code = aid_option_parse("aid", texts->text[t], &count, aid);
+        if (code >= 0)
+            return code;
         if (settings->aid_count + count > IMK_AIDS_MAX)
             return command_misused("--aid: at most %d quantities in all", IMK_AIDS_MAX);
         for (size_t k = 0; k < count; k++)

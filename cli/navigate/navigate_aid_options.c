@@ -2,7 +2,7 @@
 /* The options of imukit navigate about aids: which columns are used, their sigmas and lever arms.
  */
 #include "navigate_parts.h"
-#include "shell/aid_text.h"
+#include "shell/aid_option.h"
 
 #include <math.h>
 #include <string.h>
@@ -43,13 +43,17 @@ int navigate_parse_aids(const navigate_options *o, imk_navigate_log_settings *s)
     if (code >= 0 || !o->aid)
         return code;
     if (o->aid_sigma)
-        code = aid_text_parse("aid-sigma", o->aid_sigma, &s->aid_count, s->aid);
+        code = aid_option_kinds("aid-sigma", o->aid_sigma, &s->aid_count, s->aid);
     if (code < 0 && o->aid_lever_arm)
-        code = aid_arm_parse("aid-lever-arm", o->aid_lever_arm, s->lever_arm, s->lever_arm_sigma);
+        code = aid_option_arm("aid-lever-arm", o->aid_lever_arm, s->lever_arm, s->lever_arm_sigma);
     if (code < 0 && o->speed_lever_arm)
-        code = aid_arm_parse("speed-lever-arm", o->speed_lever_arm, s->speed_lever_arm, NULL);
+        code = aid_option_arm("speed-lever-arm", o->speed_lever_arm, s->speed_lever_arm, NULL);
     for (size_t k = 0; k < s->aid_count && code < 0; k++) {
         imk_aid *aid = &s->aid[k];
+        if (aid->interval != 1.0 || aid->from != 1.0 || aid->until < (double)INFINITY)
+            return command_misused("--aid-sigma \"%s\": the times are those of the table; "
+                                   "--aid-interval and --aid-until choose among them",
+                                   o->aid_sigma);
         const bool odometer = aid->kind == IMK_AID_ODOMETER;
         if (aid->kind == IMK_AID_HEADING)
             continue;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* One run into one log, many into a directory, and the truth and the aids into other logs. */
-#include "shell/aid_text.h"
+#include "shell/aid_option.h"
 #include "shell/job_progress.h"
 #include "simulate_parts.h"
 
@@ -85,17 +85,19 @@ static int simulate_aids(const simulate_options *o, const imk_model *model, cons
 {
     imk_aid aid[IMK_AIDS_MAX];
     size_t count = 0;
-    double arm[3] = {0}, arm_sigma[3] = {0};
-    int code = aid_text_parse("aid", o->aid, &count, aid);
+    double arm[3], arm_sigma[3];
+    int code = aid_option_kinds("aid", o->aid, &count, aid);
     if (code < 0 && o->aid_lever_arm)
-        code = aid_arm_parse("aid-lever-arm", o->aid_lever_arm, arm, arm_sigma);
+        code = aid_option_arm("aid-lever-arm", o->aid_lever_arm, arm, arm_sigma);
     if (code >= 0)
         return code;
     for (size_t k = 0; k < count; k++) {
-        aid[k].interval = isnan(o->aid_rate) ? 1.0 : 1.0 / o->aid_rate;
+        if (!isnan(o->aid_rate))
+            aid[k].interval = 1.0 / o->aid_rate;
         aid[k].from = 0.0;
-        aid[k].until = isnan(o->aid_until) ? (double)INFINITY : o->aid_until;
-        if (aid[k].kind == IMK_AID_ODOMETER)
+        if (!isnan(o->aid_until))
+            aid[k].until = o->aid_until;
+        if (aid[k].kind == IMK_AID_ODOMETER || !o->aid_lever_arm)
             continue;
         memcpy(aid[k].lever_arm, arm, sizeof arm);
         memcpy(aid[k].lever_arm_sigma, arm_sigma, sizeof arm_sigma);

@@ -6,13 +6,13 @@
  *
  *  Words, in any order after the first quantity; commas may stand between them:
  *  - gnss, gps, barometer, compass, …: a name at the start, without effect;
- *  - position, velocity, height, heading, zero velocity: 1 sigma of one reading; one number, or
- *    where there are three axes three, for north, east, down. With "horizontal" before it, down is
- *    not measured;
- *  - odometer, or speed: one number, along body x; or three, along x, y, z;
+ *  - position, velocity, zero velocity: 1 sigma of one reading; one number, two (horizontal, down)
+ *    or three (north, east, down). With "horizontal" before it, down is not measured;
+ *  - height, heading: one number;
+ *  - odometer, speed: one number, along body x; two, along x, and along y and z; or three;
  *  - correlated 60 s: the error is a Gauss-Markov process of the stated 1 sigma, beside white noise
  *    of a tenth of it. Right behind a quantity it is of that one, behind a comma of all;
- *  - position 1 m correlated 2 m over 60 s: both stated, white noise and the process;
+ *  - correlated 2 m over 60 s: it has this 1 sigma, beside the white noise that is stated;
  *  - at 1 Hz, every 10 s: how often; default 1 Hz;
  *  - from 30 s, until 600 s: first and last reading; default after the first interval, and without
  *    end;

@@ -48,23 +48,17 @@ static void test_correlated(void **state)
     CHECK_RELATIVE(aid[0].correlation_time, 60.0, 1e-15);
     assert_true(aid[1].correlated_sigma[0] == 0.0);
     CHECK_RELATIVE(aid[1].sigma[0], 0.1, 1e-15);
-}
-
-/* White noise and process, each with its size. */
-static void test_correlated_beside_white(void **state)
-{
-    (void)state;
-    imk_aid aid[IMK_AIDS_MAX];
-    assert_int_equal(
-        parse("position 1 m correlated 2 2 3 m over 60 s, speed 0.1 m/s, correlated 5 s", aid), 2);
+    assert_int_equal(parse("position 1 m correlated 2 3 m over 60 s, velocity 0.1 m/s", aid), 2);
     for (int i = 0; i < 3; i++) {
         CHECK_RELATIVE(aid[0].sigma[i], 1.0, 1e-15);
         CHECK_RELATIVE(aid[0].correlated_sigma[i], i < 2 ? 2.0 : 3.0, 1e-15);
+        assert_true(aid[1].correlated_sigma[i] == 0.0);
     }
     CHECK_RELATIVE(aid[0].correlation_time, 60.0, 1e-15);
-    assert_int_equal(aid[1].kind, IMK_AID_ODOMETER);
-    CHECK_RELATIVE(aid[1].sigma[0], 0.01, 1e-12);
-    CHECK_RELATIVE(aid[1].correlation_time, 5.0, 1e-15);
+    assert_true(aid[1].correlation_time == 0.0);
+    assert_int_equal(parse("speed 0.1 m/s correlated 0.05 m/s over 60 s", aid), 1);
+    CHECK_RELATIVE(aid[0].correlated_sigma[0], 0.05, 1e-15);
+    assert_true(aid[0].correlated_sigma[1] == 0.0);
 }
 
 static void test_other_kinds(void **state)
@@ -85,6 +79,13 @@ static void test_other_kinds(void **state)
     CHECK_RELATIVE(aid[0].sigma[2], 0.3, 1e-15);
     CHECK_RELATIVE(aid[0].lever_arm[2], -2.0, 1e-15);
     CHECK_RELATIVE(aid[0].lever_arm_sigma[1], 0.05, 1e-15);
+    assert_int_equal(parse("speed 0.1 0.2 m/s", aid), 1);
+    assert_int_equal(aid[0].kind, IMK_AID_ODOMETER);
+    CHECK_RELATIVE(aid[0].sigma[1], 0.2, 1e-15);
+    CHECK_RELATIVE(aid[0].sigma[2], 0.2, 1e-15);
+    assert_int_equal(parse("position 1 2 m", aid), 1);
+    CHECK_RELATIVE(aid[0].sigma[1], 1.0, 1e-15);
+    CHECK_RELATIVE(aid[0].sigma[2], 2.0, 1e-15);
     assert_int_equal(parse("horizontal position 3 m", aid), 1);
     assert_true(aid[0].sigma[1] == 3.0 && isinf(aid[0].sigma[2]));
     assert_int_equal(parse("compass heading 1 deg", aid), 1);
@@ -102,15 +103,17 @@ static void test_messages(void **state)
         {"positon 1 m", "\"positon\" is not a word", "position"},
         {"position", "\"position\" has no quantity", "length"},
         {"position 1 kg", "\"1 kg\"", "length"},
-        {"position 1 2 m", "\"1 2 m\"", "one number or three"},
+        {"position 1 2 3 4 m", "\"1 2 3 4 m\"", "one to three numbers"},
+        {"correlated 2 m over 60 s position 1 m", "with a size follows no quantity", "behind"},
+        {"position 1 m over 60 s", "\"over\"", "correlated 2 m over 60 s"},
+        {"position 1 m correlated 2 m/s over 60 s", "\"2 m/s\"", "length"},
+        {"position 1 m correlated 2 m over", "\"over\" has no quantity", "time"},
         {"position 1 m at 1", "\"1\"", "frequency"},
         {"position 1 m until 0 s", "no positive number", "above 0"},
-        {"position 1 m lever 1 m", "\"lever\" has one number", "three"},
+        {"position 1 m lever 1 m", "\"lever\" has not three numbers", "three"},
         {"zero 1 m/s", "\"zero\"", "zero velocity"},
         {"at 1 Hz", "no quantity", "position"},
         {"", "no quantity", "position"},
-        {"position 1 m, correlated 2 m over 60 s", "\"correlated\"", "without a comma"},
-        {"position 1 m over 60 s", "\"over\"", "correlated"},
         {"position 0 m", "", "sigma above 0"},
         {"position -1 m", "", "sigma above 0"},
         {"position 1 m from 20 s until 10 s", "", "not before"},
@@ -134,7 +137,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_gnss),
         cmocka_unit_test(test_correlated),
-        cmocka_unit_test(test_correlated_beside_white),
         cmocka_unit_test(test_other_kinds),
         cmocka_unit_test(test_messages),
     };

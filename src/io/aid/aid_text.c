@@ -24,8 +24,8 @@ typedef enum aid_word {
     UNTIL,
     HORIZONTAL,
     ARM,
-    OVER,
     SPEED,
+    OVER,
     WORDS
 } aid_word;
 
@@ -44,8 +44,8 @@ static const char *const words[WORDS] = {
     [UNTIL] = "until",
     [HORIZONTAL] = "horizontal",
     [ARM] = "arm",
-    [OVER] = "over",
     [SPEED] = "speed",
+    [OVER] = "over",
 };
 
 static const char *const names[] = {"gnss",    "gps",     "rtk",          "barometer",
@@ -133,11 +133,11 @@ static imk_status read_quantity(const token *behind, const char **at, const char
     imk_error reason;
     const imk_status status = imk_quantity_parse(begin, end, dimension, numbers, q->value, q->sigma,
                                                  &q->count, NULL, &reason);
-    if (status == IMK_OK && (q->count == 1 || q->count == numbers))
+    if (status == IMK_OK && q->count > 0)
         return IMK_OK;
     char expected[160];
     snprintf(expected, sizeof expected, "%s with a unit of %s, such as %s",
-             numbers > 1 ? "one number or three" : "a number", imk_dimension_name(dimension),
+             numbers > 1 ? "one to three numbers" : "a number", imk_dimension_name(dimension),
              imk_dimension_examples(dimension));
     const token value = {begin, (size_t)(end - begin), false};
     if (value.length == 0)
@@ -154,7 +154,7 @@ typedef struct reading {
     imk_aid *aid;
     size_t count;
     double correlation[IMK_AIDS_MAX]; /* of each; 0: none of its own */
-    bool stated[IMK_AIDS_MAX];        /* its correlated_sigma is stated */
+    bool sized[IMK_AIDS_MAX];         /* its correlated_sigma is stated */
     double interval, from, until, all;
     quantity arm;
     bool has_arm, horizontal;
@@ -169,6 +169,18 @@ static bool take_second(const char **at, const char *second)
         return false;
     *at = ahead;
     return true;
+}
+
+/* One number is for all axes, of an odometer for the way ahead; of two, the second is for the
+ * vertical, of an odometer for the other ways. `rest` is for axes that are not named. */
+static void put_sigmas(imk_aid_kind kind, const quantity *q, double rest, double sigma[3])
+{
+    const bool odometer = kind == IMK_AID_ODOMETER;
+    for (size_t i = 0; i < imk_aid_axes(kind); i++)
+        sigma[i] = q->count == 3   ? q->value[i]
+                   : q->count == 2 ? q->value[odometer ? i > 0 : i > 1]
+                   : odometer && i ? rest
+                                   : q->value[0];
 }
 
 static imk_status add_aid(reading *r, int kind, token t, const char **at, imk_error *error)
@@ -186,50 +198,45 @@ static imk_status add_aid(reading *r, int kind, token t, const char **at, imk_er
     const imk_status status = read_quantity(&t, at, imk_aid_unit(aid->kind), axes, &q, error);
     if (status != IMK_OK)
         return status;
-    for (size_t i = 0; i < axes; i++)
-        if (q.count > 1 || i == 0 || kind != IMK_AID_ODOMETER)
-            aid->sigma[i] = q.value[q.count > 1 ? i : 0];
+    put_sigmas(aid->kind, &q, (double)INFINITY, aid->sigma);
     if (r->horizontal && axes > 1)
         aid->sigma[2] = (double)INFINITY;
     r->horizontal = false;
-    r->stated[r->count] = false;
+    r->sized[r->count] = false;
     r->correlation[r->count++] = 0.0;
     return IMK_OK;
 }
 
-/* Is the next word "over", behind a quantity? */
-static bool has_over(const char *at)
+/* Is "over" the word that ends the quantity here? */
+static bool leads_to_over(const char *at)
 {
     for (;;) {
         const token t = next_token(&at);
-        if (t.length == 0 || t.behind_comma)
-            return false;
-        if (word_of(&t) >= 0)
-            return word_of(&t) == OVER;
+        if (t.length == 0 || t.behind_comma || word_of(&t) >= 0)
+            return t.length > 0 && !t.behind_comma && word_of(&t) == OVER;
     }
 }
 
-/* "correlated 2 m over 60 s", of the quantity before: beside its white noise. */
-static imk_status add_correlated(reading *r, token t, const char **at, imk_error *error)
+/* "2 m over 60 s", of the aid named last. */
+static imk_status take_size(reading *r, token t, const char **at, quantity *time, imk_error *error)
 {
-    quantity q, time;
+    quantity q;
     if (r->count == 0 || t.behind_comma)
-        return refuse(error, IMK_ERROR_SYNTAX, &t, "with a size belongs to one quantity",
-                      "write it right behind the quantity, without a comma");
+        return refuse(
+            error, IMK_ERROR_SYNTAX, &t, "with a size follows no quantity",
+            "it behind what is measured, such as \"position 1 m correlated 2 m over 60 s\"");
     imk_aid *aid = &r->aid[r->count - 1];
-    const size_t axes = imk_aid_axes(aid->kind);
-    imk_status status = read_quantity(&t, at, imk_aid_unit(aid->kind), axes, &q, error);
+    imk_status status =
+        read_quantity(&t, at, imk_aid_unit(aid->kind), imk_aid_axes(aid->kind), &q, error);
     if (status != IMK_OK)
         return status;
+    put_sigmas(aid->kind, &q, 0.0, aid->correlated_sigma);
+    for (int i = 0; i < 3; i++)
+        if (!isfinite(aid->sigma[i]))
+            aid->correlated_sigma[i] = 0.0;
+    r->sized[r->count - 1] = true;
     const token over = next_token(at);
-    status = read_quantity(&over, at, "s", 1, &time, error);
-    if (status != IMK_OK)
-        return status;
-    for (size_t i = 0; i < axes; i++)
-        aid->correlated_sigma[i] = isfinite(aid->sigma[i]) ? q.value[q.count > 1 ? i : 0] : 0.0;
-    r->stated[r->count - 1] = true;
-    r->correlation[r->count - 1] = time.value[0];
-    return IMK_OK;
+    return read_quantity(&over, at, "s", 1, time, error);
 }
 
 static imk_status take_word(reading *r, int word, token t, const char **at, imk_error *error)
@@ -237,9 +244,7 @@ static imk_status take_word(reading *r, int word, token t, const char **at, imk_
     quantity q;
     imk_status status = IMK_OK;
     if (word <= ZERO || word == SPEED)
-        return add_aid(r, word == SPEED ? (int)IMK_AID_ODOMETER : word, t, at, error);
-    if (word == CORRELATED && has_over(*at))
-        return add_correlated(r, t, at, error);
+        return add_aid(r, word == SPEED ? IMK_AID_ODOMETER : word, t, at, error);
     if (word == HORIZONTAL) {
         r->horizontal = true;
         return IMK_OK;
@@ -252,11 +257,14 @@ static imk_status take_word(reading *r, int word, token t, const char **at, imk_
         r->has_arm = true;
         status = read_quantity(&behind, at, "m", 3, &r->arm, error);
         if (status == IMK_OK && r->arm.count != 3)
-            status = refuse(error, IMK_ERROR_SYNTAX, &t, "has one number",
+            status = refuse(error, IMK_ERROR_SYNTAX, &t, "has not three numbers",
                             "three numbers: along body x, y and z");
         return status;
     }
-    status = read_quantity(&t, at, word == AT ? "Hz" : "s", 1, &q, error);
+    if (word == CORRELATED && leads_to_over(*at))
+        status = take_size(r, t, at, &q, error);
+    else
+        status = read_quantity(&t, at, word == AT ? "Hz" : "s", 1, &q, error);
     if (status == IMK_OK && !(q.value[0] > 0.0 && isfinite(q.value[0])))
         status = refuse(error, IMK_ERROR_RANGE, &t, "has no positive number", "a number above 0");
     if (status != IMK_OK)
@@ -287,7 +295,7 @@ static imk_status finish(reading *r, imk_error *error)
         aid->until = r->until;
         aid->correlation_time = time;
         for (int i = 0; i < 3; i++) {
-            if (time > 0.0 && isfinite(aid->sigma[i]) && !r->stated[k]) {
+            if (time > 0.0 && isfinite(aid->sigma[i]) && !r->sized[k]) {
                 aid->correlated_sigma[i] = aid->sigma[i];
                 aid->sigma[i] *= IMK_AID_TEXT_WHITE;
             }
