@@ -98,7 +98,7 @@ static imk_status take(search *s, imk_drift_answer *answer, imk_error *error)
 {
     imk_drift_allocation *need = &answer->allocation;
     const imk_drift_analysis *a = s->one->analysis;
-    double highest = 0.0, x, reached;
+    double highest = 0.0, x = 0.0, reached = (double)INFINITY;
     if (need->present <= s->want->goal) {
         answer->reached = need->present;
         return IMK_OK;
@@ -110,9 +110,10 @@ static imk_status take(search *s, imk_drift_answer *answer, imk_error *error)
         highest = fmax(highest, s->present[k]);
     }
     imk_status status = find(s, false, 1.0, &x, &reached, error);
+    if (status != IMK_OK)
+        return status;
     need->all = reached <= s->want->goal ? x : 0.0;
-    if (status == IMK_OK)
-        status = find(s, true, highest, &x, &answer->reached, error);
+    status = find(s, true, highest, &x, &answer->reached, error);
     for (size_t k = 0; k < a->source_count && status == IMK_OK; k++) {
         need->source[k] = answer->reached <= s->want->goal ? s->factor[k] : 0.0;
         need->alone[k] = 0.0;

@@ -56,11 +56,12 @@ typedef struct imki_aided_step {
 
 /* moved += what the estimates in x do; they decay. */
 void imki_feed_vector(const imki_aided_step *step, double *x, double moved[9]);
-/* The estimates' part in what a driver's states do, b being what they add to x. */
-void imki_feed_states(size_t states, imki_drift_element *element, int driver_states, double b[2][9],
-                      const imki_driver_step *driver, double *covariance);
+/* The estimates' part in what a driver's states do to S and P (n x n), b being what they add to x.
+ */
+void imki_feed_states(size_t n, imki_drift_element *element, int states, double b[2][9],
+                      const imki_driver_step *driver, double *p);
 /* P by phi, gamma and the decay. */
-void imki_feed_covariance(size_t states, const imki_drift_step *step, double *covariance);
+void imki_feed_covariance(size_t n, const imki_drift_step *step, double *p);
 /* The updates at the end of a step. */
 void imki_drift_update_part(const imki_drift_plan *plan, imki_drift_part *part,
                             const imki_aided_step *step);

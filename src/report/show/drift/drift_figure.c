@@ -163,7 +163,7 @@ static bool has_shares(const imk_drift_case *one, size_t t)
 static void add_bands(const drawing *d, const imk_drift_case *one, const band *bands, size_t count)
 {
     double *below = d->below, rest = 0;
-    for (size_t t = d->first; t < d->count; t++)
+    for (size_t t = 0; t < d->count; t++)
         below[t] = has_shares(one, t) ? 0 : (double)NAN;
     for (size_t b = 0; b <= count; b++) {
         const band *of = b < count ? &bands[b] : &(band){.label = "others", .color = OTHERS};

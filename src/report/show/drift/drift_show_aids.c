@@ -45,13 +45,14 @@ static void add_sigmas(const imk_aid *aid, const double sigma[3], imki_text *tex
 {
     const imk_unit unit =
         imk_unit_of(aid->kind == IMK_AID_HEADING ? "deg" : imk_aid_unit(aid->kind));
+    const size_t axes = imk_aid_axes(aid->kind) == 3 ? 3 : 1;
     double first = 0.0;
     bool equal = true;
-    for (size_t i = 0; i < imk_aid_axes(aid->kind); i++) {
+    for (size_t i = 0; i < axes; i++) {
         first = first > 0.0 || !isfinite(sigma[i]) ? first : sigma[i];
         equal = equal && (sigma[i] == first || !isfinite(sigma[i]));
     }
-    for (size_t i = 0; i < (equal ? 1 : imk_aid_axes(aid->kind)); i++) {
+    for (size_t i = 0; i < (equal ? 1 : axes); i++) {
         const double value = equal ? first : sigma[i];
         if (isfinite(value))
             imki_text_add(text, " %.3g", value / unit.scale);

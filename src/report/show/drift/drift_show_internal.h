@@ -22,7 +22,7 @@ void imki_drift_aids_words(const imk_drift_models *r, imki_text *text);
 void imki_drift_show_aids(const imk_drift_models *r, const char *filter_model, imk_result *result);
 
 /* The 1 sigma behind a source "aid.…", times a factor; nothing for a lever arm. */
-void imki_drift_aid_value(const imk_drift_settings *settings, const char *source, double factor,
+void imki_drift_aid_value(const imk_drift_settings *s, const char *name, double factor,
                           imki_text *text);
 
 /* Each table behind an empty line. Growth of one case, two of one model, or several models. */
