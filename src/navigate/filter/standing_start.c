@@ -100,12 +100,14 @@ static void describe(const imk_navigation_filter *f, const imk_standing_start *s
     }
 }
 
-/* P H^T + J of all states, and the inverse of S. @return z^T S^-1 z; infinity: S has no inverse */
+/* P H^T + J of all states, and the inverse of S, zeros if it has none. @return z^T S^-1 z; infinity:
+ * S has no inverse */
 static double expect(const imk_navigation_filter *f, const measurement *m, double *ph,
                      double inverse[9])
 {
     const size_t n = f->states, rows = m->rows;
     double s[9];
+    memset(inverse, 0, 9 * sizeof *inverse);
     for (size_t i = 0; i < n; i++)
         for (size_t r = 0; r < rows; r++) {
             double sum = 0.0;
