@@ -5,7 +5,9 @@
  *
  * Rows navigate_step, navigate_run and navigate_lanes against the textbook; navigate_lanes_run:
  * eight lanes against our own form for one run. What each misses at the end of the drive is a
- * remark. */
+ * remark. Row navigation_filter: the filter of a tactical unit at rest (39 states) with
+ * position and velocity once a second and the covariance 20 times a second, for a million samples;
+ * it has no yardstick. */
 #include "bench.h"
 
 #include "textbook_ned.h"
@@ -14,6 +16,7 @@
 
 #include "imukit/motion.h"
 #include "imukit/navigate.h"
+#include "imukit/navigation_filter.h"
 
 enum { SAMPLES = 60000, REPEATS = 15, BLOCK = 1000, BLOCKS = 40, MIDDLE = 20000 };
 static const double sample_rate = 100.0;
@@ -260,6 +263,84 @@ static void print_accuracy(const drive *d)
     print_missed(d, "a lane", &end);
 }
 
+/* ---- the filter ------------------------------------------------------------------------------
+ */
+
+enum { FILTER_SAMPLES = 1000000, FILTER_REPEATS = 3 };
+
+typedef struct filtered {
+    const drive *drive;
+    imk_navigation_filter_settings settings;
+    void *memory;
+    size_t size;
+} filtered;
+
+static imk_aid_reading reading_at(imk_aid_kind kind, const imk_navigation_state *state)
+{
+    imk_geodetic place;
+    imk_vector3 velocity;
+    imk_navigation_state_to_ned(state, &place, &velocity, NULL);
+    imk_aid_reading reading = {.time = state->time};
+    memcpy(reading.value, velocity.v, sizeof velocity.v);
+    if (kind == IMK_AID_POSITION) {
+        reading.value[0] = place.latitude;
+        reading.value[1] = place.longitude;
+        reading.value[2] = place.height;
+    }
+    return reading;
+}
+
+/* At rest, as readings must fit: what is computed is the same on a drive. */
+static void run_filter(void *context)
+{
+    const filtered *w = context;
+    imk_navigation_state here = w->drive->start;
+    imk_navigation_filter *f;
+    here.velocity = (imk_vector3){{0}};
+    if (imk_navigation_filter_start(&w->settings, &here, &f, w->memory, w->size, NULL) != IMK_OK)
+        exit(1);
+    const imk_vector3 gravity = imk_gravity_ecef(here.position), earth = {{0, 0, IMK_EARTH_RATE}};
+    const imk_quaternion down = imk_quaternion_conjugate(here.attitude);
+    const imk_vector3 angle = imk_quaternion_rotate(down, imk_vector3_scale(earth, INTERVAL));
+    const imk_vector3 lift = imk_quaternion_rotate(down, imk_vector3_scale(gravity, -INTERVAL));
+    for (size_t k = 0; k < FILTER_SAMPLES; k++) {
+        imk_navigation_filter_step(f, INTERVAL, angle, lift);
+        if (k % 100 != 99)
+            continue;
+        here.time = imk_navigation_filter_state(f).time;
+        const imk_aid_reading place = reading_at(IMK_AID_POSITION, &here);
+        const imk_aid_reading velocity = reading_at(IMK_AID_VELOCITY, &here);
+        if (imk_navigation_filter_aid(f, 0, &place) != IMK_AID_USED ||
+            imk_navigation_filter_aid(f, 1, &velocity) != IMK_AID_USED)
+            exit(1);
+    }
+    bench_use(f);
+}
+
+static void bench_filter(const drive *d)
+{
+    imk_model *model = allocate(sizeof *model);
+    filtered w = {.drive = d};
+    imk_navigation_filter_default(&w.settings);
+    imk_device_model(imk_device_find("tactical"), model);
+    if (imk_navigation_filter_describe(model, INTERVAL, (imk_vector3){{0}}, (imk_vector3){{0}},
+                                       &w.settings, NULL) != IMK_OK)
+        exit(1);
+    w.settings.step = 0.05;
+    w.settings.aid_count = 2;
+    w.settings.aid[0] = imk_aid_default(IMK_AID_POSITION);
+    w.settings.aid[1] = imk_aid_default(IMK_AID_VELOCITY);
+    for (int i = 0; i < 9; i++)
+        w.settings.initial_sigma[i] = i < 3 ? 1.0 : i < 6 ? 0.1 : 1e-2;
+    w.size = imk_navigation_filter_size(&w.settings);
+    w.memory = allocate(w.size);
+    double time, none;
+    bench_compare(FILTER_REPEATS, run_filter, &w, NULL, NULL, &time, &none);
+    bench_row_time("navigation_filter", time, (double)NAN, "s", "-", 1);
+    free(w.memory);
+    free(model);
+}
+
 int main(void)
 {
     bench_pin();
@@ -281,6 +362,7 @@ int main(void)
     bench_row_time("navigate_lanes_run", each * ours / IMK_STRAPDOWN_LANES, each * yardstick, "ns",
                    isa, 1);
     free_lanes(l);
+    bench_filter(&d);
     for (int i = 0; i < 6; i++)
         free(d.means[i]);
     return 0;

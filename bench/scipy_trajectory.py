@@ -43,8 +43,11 @@ def gravity(position):
     height = p * c + z * s - A * w
     surface = GAMMA_E * (1 + K * s2) / w
     g = surface * (1 - 2 / A * (1 + F + M - 2 * F * s2) * height + 3 / A**2 * height**2)
-    g_p = -g * c / p
-    return np.column_stack((x * g_p, y * g_p, -g * s))
+    # toward the equator, over sine and cosine
+    north = -2 * 8.1486e-9 * height * (1 - (0.7365 - 0.353 * height / A) * height / A)
+    north += 2 * 7.911e-12 * height * s2
+    g_p = -(g + s2 * north) * c / p
+    return np.column_stack((x * g_p, y * g_p, (c * c * north - g) * s))
 
 
 def truth(t, position, quaternion, origin, instant):

@@ -36,6 +36,12 @@ static double normal_gravity(double sine, double height)
             3.0 * height * height / (a * a));
 }
 
+/* Toward the equator, of first order in height. */
+static double gravity_north(double sine, double cosine, double height)
+{
+    return -8.1491e-9 * (2.0 * sine * cosine) * height * (1.0 - 0.7272 * height / semi_major_axis);
+}
+
 static void rotation_quaternion(const double v[3], double q[4])
 {
     const double angle = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -118,6 +124,7 @@ void textbook_ned_step(textbook_ned *s, double dt, const double angle[3], const 
     cross(twice, v, coriolis);
     for (int i = 0; i < 3; i++)
         next[i] = v[i] + force[i] - 0.5 * lag[i] - coriolis[i] * dt;
+    next[0] += gravity_north(sine, cosine, height) * dt;
     next[2] += normal_gravity(sine, height) * dt;
 
     s->height -= 0.5 * dt * (v[2] + next[2]);

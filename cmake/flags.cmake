@@ -24,7 +24,8 @@ if(IMUKIT_SANITIZE)
   # ends in an illegal instruction, of which a debugger tells the line.
   if(NOT IMUKIT_FUZZ AND CMAKE_C_COMPILER_ID STREQUAL GNU)
     set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
-    list(APPEND imukit_flags -fno-pie -fsanitize-undefined-trap-on-error)
+    # Sizes of objects are what the address sanitizer knows better; gcc takes a fifth longer for them.
+    list(APPEND imukit_flags -fno-pie -fsanitize-undefined-trap-on-error -fno-sanitize=object-size)
     add_link_options(-no-pie)
   endif()
 endif()

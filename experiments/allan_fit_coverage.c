@@ -61,7 +61,7 @@ static void simulate(double *y, const double *truth, double dt, uint64_t seed)
     const imk_random random = imk_random_seeded(seed);
     memset(y, 0, SAMPLES * sizeof *y);
     imk_white_start(&white, truth[0], dt, random, 1);
-    imk_flicker_start(&flicker, truth[1], dt, random, (uint64_t)2 << 32);
+    imk_flicker_start(&flicker, (imk_flicker){truth[1], 0}, dt, random, (uint64_t)2 << 32);
     imk_random_walk_start(&walk, truth[2], dt, random, (uint64_t)3 << 32);
     imk_white_add(&white, SAMPLES, y);
     imk_flicker_add(&flicker, SAMPLES, y);

@@ -40,7 +40,7 @@ static void start(source *s)
 {
     const imk_random random = imk_random_seeded(1);
     imk_white_start(&s->white, 1, DT, random, 1);
-    imk_flicker_start(&s->flicker, 0.1, DT, random, 1000);
+    imk_flicker_start(&s->flicker, (imk_flicker){0.1, 0}, DT, random, 1000);
     imk_random_walk_start(&s->walk, 0.002, DT, random, 2000);
 }
 

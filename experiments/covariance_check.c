@@ -213,6 +213,7 @@ static bool run_study(const study *of, size_t runs, const imk_trajectory *drive,
     if (of->all)
         add_the_rest(&model);
     imk_drift_settings settings = imk_drift_default();
+    settings.attitude_errors = IMK_ATTITUDE_EARTH; /* of displayed_attitude.c are the others */
     settings.motion = of->drive ? drive : NULL;
     settings.rate = of->rate;
     settings.vertical = of->free ? IMK_VERTICAL_FREE : IMK_VERTICAL_SLAVED;

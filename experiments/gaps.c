@@ -56,9 +56,10 @@ static double make_noise(int noise, imk_random random, uint32_t run, double *rat
     }
     if (noise == 2 || noise == 6) {
         const double b = noise == 2 ? 1 : 0.3;
-        if (rate && imk_flicker_start(&flicker, b, 1, random, imk_stream(run, 3, 0, 0)) == IMK_OK)
+        if (rate && imk_flicker_start(&flicker, (imk_flicker){b, 0}, 1, random,
+                                      imk_stream(run, 3, 0, 0)) == IMK_OK)
             imk_flicker_add(&flicker, SAMPLES, rate);
-        variance += imk_flicker_sampled_allan_variance(b, 1, m);
+        variance += imk_flicker_sampled_allan_variance((imk_flicker){b, 0}, 1, m);
     }
     if (noise == 3 || noise == 6) {
         const double k = noise == 3 ? 1 : 0.02;

@@ -83,7 +83,8 @@ static void make_samples(worker *w)
         imk_white_start(&white, truth[IMK_NOISE_WHITE], STEP, random, stream + 1);
         imk_white_add(&white, SAMPLES, x);
     }
-    imk_flicker_start(&flicker, truth[IMK_NOISE_BIAS_INSTABILITY], STEP, random, stream + 2);
+    imk_flicker_start(&flicker, (imk_flicker){truth[IMK_NOISE_BIAS_INSTABILITY], 0}, STEP, random,
+                      stream + 2);
     imk_flicker_add(&flicker, SAMPLES, x);
     imk_random_walk_start(&walk, truth[IMK_NOISE_RANDOM_WALK], STEP, random, stream + 60);
     imk_random_walk_add(&walk, SAMPLES, x);

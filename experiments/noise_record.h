@@ -101,8 +101,8 @@ static void make_record(const truth *t, uint64_t seed, uint64_t record, double *
     if (t->fractional)
         add_fractional_flicker(t, random, stream + 2, x);
     else if (t->term[IMK_NOISE_BIAS_INSTABILITY] > 0 &&
-             imk_flicker_start(&flicker, t->term[IMK_NOISE_BIAS_INSTABILITY], dt, random,
-                               stream + 2) == IMK_OK)
+             imk_flicker_start(&flicker, (imk_flicker){t->term[IMK_NOISE_BIAS_INSTABILITY], 0}, dt,
+                               random, stream + 2) == IMK_OK)
         imk_flicker_add(&flicker, t->samples, x);
     imk_random_walk_state walk;
     if (imk_random_walk_start(&walk, t->term[IMK_NOISE_RANDOM_WALK], dt, random, stream + 3) ==
@@ -139,7 +139,7 @@ static double expected(const truth *t, const double *p, size_t k)
 {
     const double dt = 1 / t->rate, f = (double)k / (2.0 * (double)t->samples * dt);
     double s = p[0] * imk_quantization_sampled_spectrum(1, dt, f) +
-               p[2] * imk_flicker_cosine_spectrum(1, dt, t->samples, k) +
+               p[2] * imk_flicker_cosine_spectrum((imk_flicker){1, 0}, dt, t->samples, k) +
                p[3] * imk_random_walk_sampled_spectrum(1, dt, f);
     imk_arma arma;
     if (t->filter.bandwidth > 0 && imk_filtered_white_arma(1, t->filter, dt, &arma) == IMK_OK)

@@ -40,8 +40,8 @@ static void add_noise(double white, double flicker, double walk, imk_random rand
     memset(out, 0, n * sizeof *out);
     if (white > 0 && imk_white_start(&w, white, 1, random, imk_stream(run, 1, 0, 0)) == IMK_OK)
         imk_white_add(&w, n, out);
-    if (flicker > 0 &&
-        imk_flicker_start(&f, flicker, 1, random, imk_stream(run, 2, 0, 0)) == IMK_OK)
+    if (flicker > 0 && imk_flicker_start(&f, (imk_flicker){flicker, 0}, 1, random,
+                                         imk_stream(run, 2, 0, 0)) == IMK_OK)
         imk_flicker_add(&f, n, out);
     if (walk > 0 && imk_random_walk_start(&k, walk, 1, random, imk_stream(run, 3, 0, 0)) == IMK_OK)
         imk_random_walk_add(&k, n, out);

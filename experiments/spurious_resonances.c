@@ -48,7 +48,7 @@ static void simulate(const kind *k, size_t n, uint64_t seed, double *x)
         x[i] = 0;
     imk_filtered_white_start(&arma, WHITE, k->filter, DT, random, (uint64_t)1 << 40);
     imk_arma_add(&arma, n, x);
-    imk_flicker_start(flicker, INSTABILITY, DT, random, (uint64_t)2 << 40);
+    imk_flicker_start(flicker, (imk_flicker){INSTABILITY, 0}, DT, random, (uint64_t)2 << 40);
     imk_flicker_add(flicker, n, x);
     free(flicker);
     imk_random_walk_start(&walk, WALK, DT, random, (uint64_t)3 << 40);

@@ -30,7 +30,7 @@ RANK = {module: rank for rank, modules in enumerate(LAYERS) for module in module
 PUBLIC = {
     "base": "attitude decimal distributions elementary executor fourier least_squares "
             "linear_algebra names random samples status units utf8",
-    "model": "correct device_sensitivity distort model model_parameter "
+    "model": "correct device_sensitivity distort model model_join model_parameter model_unstated "
              "technology_map",
     "noise": "filter_noise noise",
     "motion": "earth motion motion_script",
@@ -40,11 +40,12 @@ PUBLIC = {
     "compensate": "compensate firmware",
     "calibrate": "axes_mending calibration calibration_plan evaluate ferraris magnetometer procedure "
                  "reference_alignment repeatability static_detection test_record thermal",
-    "navigate": "alignment drift filter_tuning navigate zero_velocity",
+    "navigate": "aiding alignment drift filter_tuning navigate navigation_filter "
+                "navigation_smoother standing_start standstill",
     "physics": "instrument laboratory",  # and of each folder of src/physics
     "report": "report result show",
     "io": "campaign design_file figure_file firmware_file io log memory_limit model_file "
-          "motion_file output_file parameter_file thread_pool",
+          "aid_text motion_file output_file parameter_file thread_pool",
 }
 MODULE_OF = {name: module for module, names in PUBLIC.items() for name in names.split()}
 # Headers that gather others, for users: each public header is in one of them.

@@ -111,6 +111,14 @@ case drift-navigation in
     *"$only"*) "$imukit" drift navigation --plot "$images/drift-navigation.svg" >"$images/.draw.log" ;;
 esac
 
+case drift-outage in
+    *"$only"*)
+        "$imukit" drift tactical --initial-attitude "0.1 0.1 0.5 deg" --outage 10s,60s,300s \
+            --aid "gnss position 1 m, velocity 0.05 m/s at 1 Hz until 600 s" \
+            --plot "$images/drift-outage.svg" >"$images/.draw.log"
+        ;;
+esac
+
 case tune-tactical in
     *"$only"*) # on the motion of its page
         sed -n '/^cat > build.walk.yaml/,/^END/p' docs/filter-noise.md | sed '1d;$d' >"$images/.walk.yaml"

@@ -71,7 +71,15 @@ navigate)
         'start: {latitude: 48.1 deg, longitude: 11.6 deg, height: 520 m}' \
         'steps: [hold 150 s, accelerate to 10 m/s at 2 m/s^2, stop at 2 m/s^2, hold 20 s]' \
         'vibration: [sine z 0.02 g at 28 Hz]' >drive.yaml
-    imukit simulate tactical --motion drive.yaml --rate 100Hz -o drive.csv
+    imukit simulate tactical --motion drive.yaml --rate 100Hz -o drive.csv \
+        --aid "position 1 m, velocity 0.05 m/s" --aid-output gnss.csv
+    ;;
+join)
+    imukit physics fibre_optic --reduce -o gyro.yaml >/dev/null
+    imukit physics pendulous_servo --reduce -o accel.yaml >/dev/null
+    for axis in a b c; do
+        imukit physics ring_laser --reduce --single-axis -o $axis.yaml >/dev/null
+    done
     ;;
 merge)
     for part in 1 2; do

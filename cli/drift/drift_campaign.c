@@ -12,11 +12,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const state_names[IMK_DRIFT_STATES] = {
-    "position_north", "position_east",  "position_down", "velocity_north", "velocity_east",
-    "velocity_down",  "attitude_north", "attitude_east", "attitude_down"};
-static const char *const state_units[IMK_DRIFT_STATES] = {"m",   "m",   "m",   "m/s", "m/s",
-                                                          "m/s", "rad", "rad", "rad"};
+/* By imk_attitude_errors: so a file says which attitude its errors are of, and one from before
+ * there was a choice is read as what it holds. The last, of an aided navigator, is e^T P^-1 e of 7
+ * or 9 errors. */
+#define FIRST_STATES                                                                               \
+    "position_north", "position_east", "position_down", "velocity_north", "velocity_east",         \
+        "velocity_down"
+#define DISPLAYED_STATES FIRST_STATES, "displayed_north", "displayed_east", "displayed_down"
+#define EARTH_STATES FIRST_STATES, "attitude_north", "attitude_east", "attitude_down"
+static const char *const state_names[2][2][IMK_DRIFT_AIDED_STATES] = {
+    {{DISPLAYED_STATES, "nees_9"}, {DISPLAYED_STATES, "nees_7"}},
+    {{EARTH_STATES, "nees_9"}, {EARTH_STATES, "nees_7"}}};
+static const char *const state_units[IMK_DRIFT_AIDED_STATES] = {"m",   "m",   "m",   "m/s", "m/s",
+                                                                "m/s", "rad", "rad", "rad", "1"};
 
 /* ---- runs ---- */
 
@@ -44,8 +52,9 @@ static imk_status compute(void *context, size_t thread, uint64_t first, size_t c
         c->memory[thread] = thread_memory(c->size);
     if (!c->memory[thread])
         return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
-    return imk_drift_runs(c->one->model, &c->settings, c->seed, (uint32_t)first, count, values,
-                          c->memory[thread], c->size, error);
+    return (c->settings.aid_count > 0 ? imk_drift_aided_runs : imk_drift_runs)(
+        c->one->model, &c->settings, c->seed, (uint32_t)first, count, values, c->memory[thread],
+        c->size, error);
 }
 
 /* "3/10" -> 3 and 10. */
@@ -75,12 +84,17 @@ static double *row_times(const drift_scene *scene)
     return time;
 }
 
-static int keep_statistics(imk_drift_models *r, uint64_t runs, const double *values)
+static int keep_statistics(imk_drift_models *r, uint64_t runs, int degrees, const double *values)
 {
     imk_error error;
-    return imk_drift_models_take_runs(r, runs, values, &error) == IMK_OK
+    return imk_drift_models_take_runs(r, runs, degrees, values, &error) == IMK_OK
                ? -1
                : command_error(&error, NULL);
+}
+
+static int nees_degrees(const imk_drift_settings *settings)
+{
+    return settings->aid_count > 0 ? imk_drift_nees_degrees(settings) : 0;
 }
 
 static int run_campaign(const drift_options *o, imk_drift_models *r, crew *c,
@@ -101,7 +115,7 @@ static int run_campaign(const drift_options *o, imk_drift_models *r, crew *c,
     const campaign_work work = {IMK_DRIFT_LANES, compute, c, c->threads};
     code = campaign_run(campaign, first, runs, &work, o->output, &values);
     if (code < 0)
-        code = keep_statistics(r, runs, values);
+        code = keep_statistics(r, runs, nees_degrees(&c->settings), values);
     free(values);
     for (size_t t = 0; t < c->threads; t++)
         free(c->memory[t]);
@@ -118,14 +132,15 @@ int drift_runs(const drift_options *o, const drift_scene *scene, imk_drift_model
     c.settings.time = time;
     c.settings.time_count = scene->times.row_count;
     c.size = imk_drift_runs_workspace_size(c.one->model, &c.settings);
+    const int degrees = nees_degrees(&c.settings);
     imk_campaign campaign = {.version = imk_version(),
                              .parameters = parameters,
                              .seed = c.seed,
                              .run_count = o->monte_carlo.value,
                              .time_count = scene->times.row_count,
                              .time = time,
-                             .state_count = IMK_DRIFT_STATES,
-                             .state = state_names,
+                             .state_count = degrees > 0 ? IMK_DRIFT_AIDED_STATES : IMK_DRIFT_STATES,
+                             .state = state_names[c.settings.attitude_errors][degrees == 7],
                              .unit = state_units};
     const int code = run_campaign(o, r, &c, &campaign);
     free(time);
@@ -135,15 +150,32 @@ int drift_runs(const drift_options *o, const drift_scene *scene, imk_drift_model
 
 /* ---- a results file ---- */
 
-static int check_results(const imk_campaign_results *results, const char *path)
+/* Are the states those of runs, with `degrees` of what is normalised? */
+static bool has_states(const imk_campaign *c, imk_attitude_errors stated, int degrees)
+{
+    const size_t count = degrees > 0 ? IMK_DRIFT_AIDED_STATES : IMK_DRIFT_STATES;
+    bool same = c->state_count == count;
+    for (size_t i = 0; same && i < count; i++)
+        same = strcmp(c->state[i], state_names[stated][degrees == 7][i]) == 0;
+    return same;
+}
+
+static imk_attitude_errors stated_in(const imk_campaign *c)
+{
+    return strcmp(c->state[6], state_names[IMK_ATTITUDE_EARTH][0][6]) == 0 ? IMK_ATTITUDE_EARTH
+                                                                           : IMK_ATTITUDE_LOCAL;
+}
+
+static int check_results(const imk_campaign_results *results, const char *path, int *degrees)
 {
     const imk_campaign *c = &results->campaign;
-    bool ours = c->state_count == IMK_DRIFT_STATES && results->runs > 0;
-    for (size_t i = 0; ours && i < IMK_DRIFT_STATES; i++)
-        ours = strcmp(c->state[i], state_names[i]) == 0;
-    return ours ? -1
-                : command_failed("%s: the results of another kind of campaign, not of imukit drift",
-                                 path);
+    const bool wide = c->state_count >= IMK_DRIFT_STATES;
+    const imk_attitude_errors stated = wide ? stated_in(c) : IMK_ATTITUDE_LOCAL;
+    *degrees = has_states(c, stated, 9) ? 9 : has_states(c, stated, 7) ? 7 : 0;
+    return results->runs > 0 && has_states(c, stated, *degrees)
+               ? -1
+               : command_failed("%s: the results of another kind of campaign, not of imukit drift",
+                                path);
 }
 
 /* The times of the file alone, so that tables and figures of runs can be made. */
@@ -169,6 +201,8 @@ static void show_inputs(const imk_campaign_results *file, const char *path, imk_
     imk_result_count(result, "runs", (long long)c->run_count);
     imk_result_count(result, "first", (long long)file->run[0]);
     imk_result_count(result, "count", (long long)file->runs);
+    imk_result_text(result, "attitude_errors",
+                    stated_in(c) == IMK_ATTITUDE_EARTH ? "earth" : "local");
     (void)imk_result_json(result, "parameters", c->parameters);
     imk_result_end(result);
 }
@@ -189,8 +223,11 @@ static int show(const imk_drift_models *r, const imk_campaign_results *file, con
         list_add(&words, " of %llu runs, from run %llu on", whole, first);
     else
         list_add(&words, " runs");
-    list_add(&words, ", seed %llu, imukit %s. In brackets 95 %% intervals.",
-             (unsigned long long)c->seed, c->version);
+    list_add(&words, ", seed %llu, imukit %s.%s In brackets 95 %% intervals.",
+             (unsigned long long)c->seed, c->version,
+             stated_in(c) == IMK_ATTITUDE_EARTH
+                 ? " The heading is that against Earth-fixed axes, not the displayed one."
+                 : "");
     imk_show_drift_runs(r, words.text, result);
     list_free(&words);
     imk_result_for(result, IMK_FOR_TERMINAL);
@@ -203,7 +240,8 @@ static int show(const imk_drift_models *r, const imk_campaign_results *file, con
                     EXIT_DONE);
 }
 
-static int show_results(const drift_options *o, const char *path, const imk_campaign_results *file)
+static int show_results(const drift_options *o, const char *path, const imk_campaign_results *file,
+                        int degrees)
 {
     imk_drift_models *r;
     imk_error error;
@@ -213,7 +251,7 @@ static int show_results(const drift_options *o, const char *path, const imk_camp
     int code = EXIT_FAILED;
     if (imk_drift_models_run(0, NULL, NULL, &times, &settings, NULL, &r, &error) == IMK_OK) {
         r->name[0] = path;
-        code = keep_statistics(r, file->runs, file->values);
+        code = keep_statistics(r, file->runs, degrees, file->values);
     } else {
         code = command_error(&error, NULL);
     }
@@ -230,9 +268,10 @@ int drift_results(const drift_options *o, const char *path)
     imk_error error;
     if (imk_campaign_load(path, &results, &error) != IMK_OK)
         return command_error(&error, path);
-    int code = check_results(results, path);
+    int degrees;
+    int code = check_results(results, path, &degrees);
     if (code < 0)
-        code = show_results(o, path, results);
+        code = show_results(o, path, results, degrees);
     imk_campaign_free(results);
     return code;
 }

@@ -90,6 +90,7 @@ static void put_physics(const imk_model *model, imk_result *result)
     bare->name[0] = bare->description[0] = bare->residual_of[0] = '\0';
     forget(&bare->gyro_evidence);
     forget(&bare->accel_evidence);
+    bare->gyro.stated_zero = bare->accel.stated_zero = bare->mag.stated_zero = 0;
     bare->gyro.noise.density = bare->accel.noise.density = IMK_DENSITY_TWO_SIDED;
     if (command_unless_memory(imk_model_print_json(bare, NULL, &text, &size, NULL)) == IMK_OK)
         (void)imk_result_json(result, "model", text);
@@ -122,12 +123,57 @@ static void put_settings(const imk_drift_settings *s, imk_result *result)
     imk_result_text(result, "aligned", s->alignment == IMK_ALIGNED_SELF ? "self" : "given");
     if (s->alignment == IMK_ALIGNED_SELF)
         put_number("alignment time [s]", s->alignment_time, result);
+    imk_result_text(result, "attitude errors",
+                    s->attitude_errors == IMK_ATTITUDE_EARTH ? "earth" : "local");
+    if (s->gravity_deflection > 0) {
+        put_number("gravity deflection [m/s^2]", s->gravity_deflection, result);
+        put_number("gravity distance [m]", s->gravity_distance, result);
+    }
     imk_result_flag(result, "compensated", s->compensated);
     imk_result_array(result, "initial sigma [m, m/s, rad]");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
         put_number(NULL, s->initial_sigma[i], result);
     imk_result_end(result);
     imk_result_end(result);
+}
+
+static void put_numbers(const char *key, const double *value, imk_result *result)
+{
+    imk_result_array(result, key);
+    for (int i = 0; i < 3; i++)
+        put_number(NULL, value[i], result);
+    imk_result_end(result);
+}
+
+static void put_aid(const imk_aid *aid, imk_result *result)
+{
+    imk_result_object(result, NULL);
+    imk_result_text(result, "kind", imk_aid_kind_name(aid->kind));
+    put_numbers("white sigma", aid->sigma, result);
+    put_numbers("correlated sigma", aid->correlated_sigma, result);
+    put_number("correlation time [s]", aid->correlation_time, result);
+    put_number("interval [s]", aid->interval, result);
+    put_number("from [s]", aid->from, result);
+    put_number("until [s]", aid->until, result);
+    put_numbers("lever arm [m]", aid->lever_arm, result);
+    put_numbers("lever arm sigma [m]", aid->lever_arm_sigma, result);
+    imk_result_end(result);
+}
+
+/* Nothing without aids, so that such a campaign is what it was. */
+static void put_aids(const imk_drift_settings *s, imk_result *result)
+{
+    if (s->aid_count == 0)
+        return;
+    imk_result_array(result, "aids");
+    for (size_t k = 0; k < s->aid_count; k++)
+        put_aid(&s->aid[k], result);
+    imk_result_end(result);
+    if (s->filter_model) {
+        imk_result_object(result, "filter");
+        put_physics(s->filter_model, result);
+        imk_result_end(result);
+    }
 }
 
 char *drift_parameters(const drift_scene *scene, const imk_drift_settings *settings,
@@ -140,6 +186,7 @@ char *drift_parameters(const drift_scene *scene, const imk_drift_settings *setti
     put_physics(model, result);
     put_motion(scene, result);
     put_settings(settings, result);
+    put_aids(settings, result);
     (void)command_unless_memory(imk_result_to_key(result, &text, &size));
     imk_result_free(result);
     return text;

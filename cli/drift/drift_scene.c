@@ -75,6 +75,23 @@ static int read_initial(const char *name, const char *text, const char *unit, do
     return -1;
 }
 
+static int read_gravity(const drift_options *o, imk_drift_settings *s)
+{
+    if (!(o->deflection >= 0 && o->deflection <= 0.1))
+        return command_misused("--gravity-deflection %g m/s^2: expected 0 to 0.1 m/s^2",
+                               o->deflection);
+    if (!isnan(o->deflection_distance) && o->deflection == 0)
+        return command_misused("--gravity-distance is for --gravity-deflection; add that option");
+    if (!isnan(o->deflection_distance) &&
+        !(o->deflection_distance > 0 && o->deflection_distance <= 1e9))
+        return command_misused("--gravity-distance %g m: expected a length up to 1e9 m",
+                               o->deflection_distance);
+    s->gravity_deflection = o->deflection;
+    if (!isnan(o->deflection_distance))
+        s->gravity_distance = o->deflection_distance;
+    return -1;
+}
+
 static int read_start(const drift_options *o, imk_drift_settings *s)
 {
     if (o->aligned == 1 && o->initial_attitude)
@@ -93,18 +110,13 @@ static int read_start(const drift_options *o, imk_drift_settings *s)
     if (!isnan(o->align_time))
         s->alignment_time = o->align_time;
     s->vertical = o->vertical == 1 ? IMK_VERTICAL_FREE : IMK_VERTICAL_SLAVED;
+    s->attitude_errors = o->attitude_errors == 1 ? IMK_ATTITUDE_EARTH : IMK_ATTITUDE_LOCAL;
     return code;
 }
 
 /* ---- times ---- */
 
-typedef struct stated {
-    size_t count;
-    double at[IMK_DRIFT_ROWS_MAX];
-} stated;
-
-/* --times "1min, 10 min, 1h" */
-static int stated_times(const char *text, stated *t)
+int drift_stated_times(const char *name, const char *text, drift_stated *t)
 {
     const double latest = 1e8; /* [s]: imk_drift_validate() */
     for (const char *begin = text; *begin;) {
@@ -114,11 +126,11 @@ static int stated_times(const char *text, stated *t)
         if (imk_quantity_parse(begin, begin + length, imk_unit_of("s").dimension, 1, &value, &sigma,
                                &count, NULL, NULL) != IMK_OK ||
             count != 1 || !(value > 0 && value <= latest))
-            return command_misused("--times \"%s\": \"%.*s\" is not a positive time with a unit; "
-                                   "write --times \"1min, 10min, 1h\"",
-                                   text, (int)length, begin);
+            return command_misused("--%s \"%s\": \"%.*s\" is not a positive time with a unit; "
+                                   "write --%s \"1min, 10min, 1h\"",
+                                   name, text, (int)length, begin, name);
         if (t->count == IMK_DRIFT_ROWS_MAX - 2)
-            return command_misused("--times: at most %d times", IMK_DRIFT_ROWS_MAX - 2);
+            return command_misused("--%s: at most %d times", name, IMK_DRIFT_ROWS_MAX - 2);
         t->at[t->count++] = value;
         begin += length;
         begin += *begin == ',';
@@ -132,12 +144,20 @@ static double motion_length(const drift_scene *s)
     return s->motion ? imk_motion_file_duration(s->motion) : (double)INFINITY;
 }
 
+/* The last row that is not past the end, whatever the rounding of its time. */
+static double last_row(double length, double rate)
+{
+    return floor(length * rate + 1e-6) / rate;
+}
+
 static int choose_duration(const drift_options *o, const drift_scene *s, double *duration)
 {
     const double length = motion_length(s);
     *duration = o->duration;
     if (isnan(*duration))
-        *duration = s->want.asked && !o->times ? s->want.time : isinf(length) ? day : length;
+        *duration = s->want.asked && !o->times ? s->want.time
+                    : isinf(length)            ? day
+                                               : last_row(length, s->settings.rate);
     if (!(*duration > 0))
         return command_misused("--duration must be positive");
     if (*duration > 1e8)
@@ -151,16 +171,37 @@ static int choose_duration(const drift_options *o, const drift_scene *s, double 
     return -1;
 }
 
+/* The end of the aids, and the times behind it. */
+static int outage_times(const drift_options *o, const drift_scene *s, drift_stated *rows)
+{
+    static const double usual[] = {10, 60, 300};
+    const double begin = imk_drift_outage(&s->settings), length = motion_length(s);
+    const int code = o->outage ? drift_stated_times("outage", o->outage, rows) : -1;
+    if (code >= 0)
+        return code;
+    for (size_t i = 0; i < sizeof usual / sizeof usual[0] && !o->outage; i++)
+        if (begin + usual[i] <= length)
+            rows->at[rows->count++] = usual[i];
+    for (size_t i = 0; i < rows->count; i++)
+        rows->at[i] += begin;
+    rows->at[rows->count++] = begin;
+    return -1;
+}
+
 static int choose_times(const drift_options *o, drift_scene *s)
 {
-    stated rows = {0};
+    drift_stated rows = {0};
     double duration = 0;
     imk_error error;
-    int code = o->times ? stated_times(o->times, &rows) : choose_duration(o, s, &duration);
+    const bool outage = !o->times && isnan(o->duration) && !isnan(imk_drift_outage(&s->settings));
+    int code = o->times ? drift_stated_times("times", o->times, &rows)
+               : outage ? outage_times(o, s, &rows)
+                        : choose_duration(o, s, &duration);
     if (code >= 0)
         return code;
     if (imk_drift_times_choose(duration, rows.count, rows.at, s->want.asked ? s->want.time : 0,
-                               s->settings.rate, o->plot || o->report || o->output, NULL, &s->times,
+                               s->settings.rate, o->plot || o->report || o->output,
+                               outage ? imk_drift_outage(&s->settings) : 0, NULL, &s->times,
                                &error) != IMK_OK)
         return command_error(&error, NULL);
     const double length = motion_length(s), last = s->times.time[s->times.count - 1];
@@ -190,9 +231,13 @@ int drift_scene_open(const drift_options *o, drift_scene *s)
         return command_misused("--rate %g Hz: expected 0.001 Hz to 1 MHz", settings->rate);
     if (!isnan(o->duration) && o->times)
         return command_misused("--duration and --times exclude each other");
-    int code = o->want ? drift_want_parse(o->want, &s->want) : -1;
+    int code = o->want ? drift_want_parse(o->want, &s->want, &s->want_after) : -1;
     if (code < 0)
         code = read_start(o, settings);
+    if (code < 0)
+        code = read_gravity(o, settings);
+    if (code < 0)
+        code = drift_aids_open(o, s);
     if (code < 0 && o->motion)
         code = open_motion(o, s);
     if (code < 0)
@@ -202,6 +247,7 @@ int drift_scene_open(const drift_options *o, drift_scene *s)
 
 void drift_scene_free(drift_scene *s)
 {
+    free(s->filter_model);
     imk_motion_file_free(s->motion);
     imk_drift_times_free(&s->times);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* --want "CEP 1 nmi @ 1h": a figure, how large it may be, and when. */
+/* --want "CEP 1 nmi @ 1h", --want "CEP 5 m after 60 s": a figure, how large it may be, and when. */
 #include "drift_parts.h"
 
 #include <math.h>
@@ -47,9 +47,18 @@ static int find_figure(const char *text, size_t length, imk_drift_wanted *want)
     return refuse(text, why);
 }
 
-int drift_want_parse(const char *text, imk_drift_wanted *want)
+/* Where the time begins: behind "@" or "after". */
+static const char *find_time(const char *text, bool *after, const char **time)
 {
-    const char *name = text + strspn(text, " "), *at = strchr(text, '@');
+    const char *at = strchr(text, '@'), *word = strstr(text, " after ");
+    *after = !at && word;
+    *time = at ? at + 1 : word ? word + strlen(" after ") : NULL;
+    return at ? at : word;
+}
+
+int drift_want_parse(const char *text, imk_drift_wanted *want, bool *after)
+{
+    const char *time, *name = text + strspn(text, " "), *at = find_time(text, after, &time);
     const size_t length = strcspn(name, " <=@");
     const char *value = name + length + strspn(name + length, " <=");
     char why[160];
@@ -73,7 +82,8 @@ int drift_want_parse(const char *text, imk_drift_wanted *want)
         snprintf(why, sizeof why, "expected a figure from 1e-9 to 1e9 %s", unit);
         return refuse(text, why);
     }
-    if (!quantity(at + 1, at + 1 + strlen(at + 1), "s", &want->time, NULL))
-        return refuse(text, "expected a positive time with its unit after @");
+    if (!quantity(time, time + strlen(time), "s", &want->time, NULL))
+        return refuse(text, *after ? "expected a positive time with its unit behind \"after\""
+                                   : "expected a positive time with its unit after @");
     return -1;
 }

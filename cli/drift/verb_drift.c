@@ -36,12 +36,24 @@ static const option navigation_option_table[] = {
     {"vertical", OPTION_CHOICE, AT(vertical), .value = "HOW", .choices = "slaved|free",
      .help = "slaved (the default): height follows the truth, as with a barometer; free: it grows "
              "without bound"},
+    {"attitude-errors", OPTION_CHOICE, AT(attitude_errors), .value = "WHICH",
+     .choices = "local|earth",
+     .help = "local (the default): of what is displayed, tilt and heading relative to the local "
+             "level at the computed position (beyond 89 deg of latitude the grid heading); earth: "
+             "against Earth-fixed axes; --initial-attitude is meant in the same way"},
+    {"gravity-deflection", OPTION_QUANTITY, AT(deflection), .value = "SIGMA", .unit = "m/s^2",
+     .help = "1 sigma of what gravity has beside normal gravity, north and east each, such as "
+             "\"30 ug\"; default 0"},
+    {"gravity-distance", OPTION_QUANTITY, AT(deflection_distance), .value = "LENGTH", .unit = "m",
+     .help = "its correlation distance along the ground; default 20km"},
     {"compensated", OPTION_FLAG, AT(compensated),
      .help = "show also the figures after calibration: known values of the model are taken out, "
              "and their uncertainty stays"},
+    ASSUME_CLASS_OPTION(AT(assume_class)),
     {"want", OPTION_TEXT, AT(want), .value = "REQUIREMENT",
      .help = "the inverse question, such as \"CEP 1 nmi @ 1h\": how small each term must be, and "
-             "which devices meet this; also R95, DRMS, height, velocity, tilt, heading"},
+             "which devices meet this; also R95, DRMS, height, velocity, tilt, heading; with --aid "
+             "\"CEP 5 m after 60 s\", from the end of the aids on"},
 };
 
 static const option place_option_table[] = {
@@ -55,6 +67,23 @@ static const option place_option_table[] = {
     TURN_OPTION("roll", AT(roll), "roll; default 0deg: level"),
     TURN_OPTION("pitch", AT(pitch), "pitch; default 0deg: level"),
     TURN_OPTION("yaw", AT(yaw), "heading, from north to east; default 0deg"),
+};
+
+static const option aid_option_table[] = {
+    {"aid", OPTION_TEXTS, AT(aid), .value = "AID",
+     .help =
+         "an aid of the navigator, such as \"gnss position 1 m, velocity 0.05 m/s at 1 Hz until "
+         "600 s\"; also height, heading, odometer, zero velocity; correlated 60 s; lever arm 1 0 "
+         "-2 ± 0.05 m; may be given several times"},
+    {"outage", OPTION_TEXT, AT(outage), .value = "TIMES",
+     .help = "times after the end of the aids to show, such as \"60s, 300s\"; default 10s, 60s, "
+             "300s"},
+    {"filter-model", OPTION_FILE, AT(filter_model), .value = "MODEL",
+     .help = "the model that the navigator's filter is made for; default: that of the unit"},
+    {"gains", OPTION_CHOICE, AT(gains), .value = "HOW", .choices = "held|retuned",
+     .help =
+         "of --want: held (the default): the filter keeps its gains when terms improve; retuned: "
+         "it is made anew for the improved terms"},
 };
 
 static const option output_option_table[] = {
@@ -124,6 +153,7 @@ typedef struct work {
     const drift_options *o;
     size_t count;
     imk_model *model[IMK_DRIFT_MODELS_MAX];
+    imk_unstated assumed[IMK_DRIFT_MODELS_MAX];
     const char *name[IMK_DRIFT_MODELS_MAX + 1];
     drift_scene scene;
     imk_drift_models *r;
@@ -136,15 +166,18 @@ static int open_models(work *w)
         w->model[m] = command_memory(NULL, sizeof *w->model[m]);
         w->count = m + 1;
         code = command_model(w->name[m], w->model[m], NULL);
+        if (code < 0)
+            code = term_selection_apply(&w->o->terms, w->model[m]);
+        if (code < 0 && w->o->assume_class)
+            imk_model_assume_class(w->model[m], options_assumed_class(w->o->assume_class),
+                                   &w->assumed[m]);
         const int added = code < 0 ? imk_model_complete(w->model[m]) : -1;
         if (added >= 0)
             command_note(
                 "%s has no %s: perfect ones are taken, so that all errors are those of its "
-                "%s",
+                "%s; imukit join %s MODEL -o UNIT.yaml adds those of another model",
                 w->name[m], added == IMK_GYRO ? "gyros" : "accelerometers",
-                added == IMK_GYRO ? "accelerometers" : "gyros");
-        if (code < 0)
-            code = term_selection_apply(&w->o->terms, w->model[m]);
+                added == IMK_GYRO ? "accelerometers" : "gyros", w->name[m]);
     }
     return code;
 }
@@ -155,13 +188,16 @@ static void show_requirement(const imk_drift_models *r, imk_result *result)
     char length[IMK_READABLE_SIZE];
     const imk_drift_case *one = &r->cases[r->case_count - 1];
     const imk_drift_figures *f = &one->figures[one->time];
-    const double time = r->times->time[one->time], hours = time / 3600, minutes = time / 60;
+    const double at = r->times->time[one->time], outage = imk_drift_outage(&r->settings.drift);
+    const bool after = at > outage; /* not without an outage */
+    const double time = after ? at - outage : at, hours = time / 3600, minutes = time / 60;
     const bool whole_hours = hours == floor(hours), whole_minutes = minutes == floor(minutes);
     if (!(f->cep > 0) || imk_drift_validity_of(f) == IMK_DRIFT_LOST)
         return;
     imk_result_line(result,
-                    "\nNext, to see what would halve the error: %s --want \"CEP %s @ %.8g%s\"",
+                    "\nNext, to see what would halve the error: %s --want \"CEP %s %s %.8g%s\"",
                     command_line(), imk_readable_figure(IMK_REQUIRED_CEP, 0.5 * f->cep, length),
+                    after ? "after" : "@",
                     whole_hours     ? hours
                     : whole_minutes ? minutes
                                     : time,
@@ -189,7 +225,8 @@ static int show(const work *w)
     const imk_drift_models *r = w->r;
     imk_result *result = show_begin("drift"), *model = r->answer ? model_data(w) : NULL;
     const imk_drift_shown shown = {w->scene.motion ? o->motion : NULL, o->seed.value,
-                                   imk_drift_verdict(r, result), model};
+                                   imk_drift_verdict(r, result), model,
+                                   o->assume_class ? w->assumed : NULL, o->filter_model};
     for (size_t i = 0; i < shown.verdict.count; i++)
         command_warn(shown.verdict.message[i].code, "%s", shown.verdict.message[i].text);
     const int code = o->output && !r->found ? drift_write_csv(r, o->output) : -1;
@@ -242,6 +279,9 @@ static int drift(work *w)
     settings.drift = scene->settings;
     settings.calibrated = o->compensated;
     settings.want = scene->want;
+    settings.assume = o->assume_class > 0;
+    settings.assumed_class = options_assumed_class(o->assume_class);
+    settings.want.retuned = o->gains == 1;
     for (size_t m = 0; m < w->count; m++)
         models[m] = w->model[m];
     const imk_status status = imk_drift_models_run(w->count, models, w->name, &scene->times,
@@ -265,6 +305,7 @@ static int run(int count, char **words)
                        .rate = missing,
                        .align_time = missing,
                        .latitude = missing,
+                       .deflection_distance = missing,
                        .seed = {.value = 1}};
     work w = {.o = &o};
     int code = options_parse(&drift_verb, count, words, &o, w.name);
@@ -320,5 +361,6 @@ const verb drift_verb = {
     .groups = {OPTION_GROUP("Navigation", navigation_option_table, 0),
                {"Terms", TERM_OPTIONS, term_options, AT(terms)},
                OPTION_GROUP("Motion and place", place_option_table, 0),
+               OPTION_GROUP("Aids", aid_option_table, 0),
                OPTION_GROUP("Runs and output", output_option_table, 0)},
     .run = run};

@@ -13,7 +13,7 @@ enum { MODELS_MAX = 8 };
 typedef struct grade_options {
     bool json;
     const char *plot, *report;
-    int map; /* in the order of the choices */
+    int map, assume_class; /* in the order of the choices */
 } grade_options;
 
 #define AT(field) offsetof(grade_options, field)
@@ -23,6 +23,7 @@ static const option grade_option_table[] = {
                           "and for accelerometers, prices of units and of single gyros"),
     {"map", OPTION_CHOICE, AT(map), .value = "WHICH", .choices = "all|gyro|accel|cost|sensor-cost",
      .help = "the map to draw; default: all, but gyro with --plot term"},
+    ASSUME_CLASS_OPTION(AT(assume_class)),
     REPORT_OPTION(AT(report), "write one self-contained page"),
     JSON_OPTION(AT(json), "print as JSON"),
 };
@@ -32,10 +33,11 @@ typedef struct grading {
     size_t count;
     imk_model *model[MODELS_MAX];
     imk_graded *graded[MODELS_MAX];
+    imk_unstated assumed[MODELS_MAX];
     const char *name[MODELS_MAX + 1];
 } grading;
 
-static int grade(grading *g)
+static int grade(grading *g, int assume_class)
 {
     int code = -1;
     for (size_t m = 0; g->name[m] && code < 0; m++) {
@@ -44,6 +46,9 @@ static int grade(grading *g)
         g->model[m] = command_memory(NULL, sizeof *g->model[m]);
         g->count = m + 1;
         code = command_model(g->name[m], g->model[m], NULL);
+        if (code < 0 && assume_class)
+            imk_model_assume_class(g->model[m], options_assumed_class(assume_class),
+                                   &g->assumed[m]);
         if (code >= 0 || imk_grade_run(g->model[m], NULL, &g->graded[m], &error) == IMK_OK)
             continue;
         const imk_finding *why =
@@ -58,7 +63,8 @@ static int grade(grading *g)
 static int show(const grading *g, const grade_options *o)
 {
     const imk_graded *graded[MODELS_MAX];
-    const imk_graded_several several = {g->count, graded, g->name};
+    const imk_graded_several several = {g->count, graded, g->name,
+                                        o->assume_class ? g->assumed : NULL};
     for (size_t m = 0; m < g->count; m++)
         graded[m] = g->graded[m];
     /* A terminal has room for one map. */
@@ -91,7 +97,7 @@ static int run(int count, char **words)
     if (code < 0 && o.map > 0 && !o.plot)
         code = command_misused("--map selects a drawing; add --plot FILE.svg");
     if (code < 0)
-        code = grade(&g);
+        code = grade(&g, o.assume_class);
     if (code < 0)
         code = show(&g, &o);
     for (size_t m = 0; m < g.count; m++) {

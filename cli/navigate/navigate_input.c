@@ -27,6 +27,57 @@ static int parse_attitude(const char *text, imk_navigate_log_settings *s)
     return -1;
 }
 
+/* Unless it is said, where nothing else measures it. */
+static bool holds_height(const navigate_options *o)
+{
+    return o->vertical < 0 ? !o->aid : o->vertical == 0;
+}
+
+static int parse_velocity(const navigate_options *o, imk_navigate_log_settings *s)
+{
+    const char *text = o->velocity;
+    size_t count = 0;
+    imk_error error;
+    if (!text)
+        return -1;
+    if (imk_quantity_parse(text, text + strlen(text), imk_unit_of("m/s").dimension, 3, s->velocity,
+                           s->velocity_sigma, &count, NULL, &error) != IMK_OK ||
+        count != 3)
+        return command_misused("--velocity \"%s\": expected three numbers and a unit, north, east "
+                               "and down, such as \"20 -3 0 m/s\", and their 1 sigma after +- if "
+                               "known",
+                               text);
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(s->velocity[i]) <= 3e4))
+            return command_misused("--velocity \"%s\": expected at most 30 km/s", text);
+    if (holds_height(o) && s->velocity[2] != 0)
+        return command_misused("--velocity \"%s\" goes up or down, but the height is held: add "
+                               "--vertical free",
+                               text);
+    s->velocity_given = true;
+    return -1;
+}
+
+static int parse_position_sigma(const char *text, imk_navigate_log_settings *s)
+{
+    double value[3], spread[3];
+    size_t count = 0;
+    imk_error error;
+    if (!text)
+        return -1;
+    bool good = imk_quantity_parse(text, text + strlen(text), imk_unit_of("m").dimension, 3, value,
+                                   spread, &count, NULL, &error) == IMK_OK &&
+                (count == 1 || count == 3);
+    for (size_t i = 0; good && i < 3; i++) {
+        s->position_sigma[i] = value[count == 1 ? 0 : i];
+        good = s->position_sigma[i] >= 0 && s->position_sigma[i] <= 1e7 && spread[0] == 0;
+    }
+    return good ? -1
+                : command_misused("--position-sigma \"%s\": expected one or three numbers (north, "
+                                  "east, down) from 0 to 10000 km with a unit, such as 5m",
+                                  text);
+}
+
 static int parse_heading(const char *text, imk_navigate_log_settings *s)
 {
     size_t count = 0;
@@ -85,6 +136,10 @@ static int check_company(const navigate_options *o)
             "that time at the start, or --attitude \"ROLL PITCH YAW deg\"");
     if (!isnan(o->align) && o->attitude)
         return command_misused("--align finds the attitude that --attitude gives: leave one out");
+    if (o->velocity && !o->attitude)
+        return command_misused(
+            "--velocity is for a start with --attitude: a unit that aligns itself "
+            "is at rest");
     if (o->heading && o->attitude)
         return command_misused("--heading is part of --attitude: leave it out");
     if (o->method >= 0 && o->attitude)
@@ -120,11 +175,12 @@ static void take_numbers(const navigate_options *o, imk_navigate_log_settings *s
     s->method = o->method >= 0 ? (imk_alignment_method)o->method : s->method;
     s->still_velocity = o->still_velocity;
     s->still_rotation = isnan(o->still_rotation) ? 0.0 : o->still_rotation;
-    s->hold_height = o->vertical == 0;
+    s->hold_height = holds_height(o);
     s->samples = (int)o->samples.value;
     s->interval = o->interval;
     s->standard_gravity = o->standard_gravity;
     s->gravity_free = o->gravity_free;
+    s->smooth = o->smooth;
 }
 
 int navigate_parse(const navigate_options *o, imk_model *model, imk_navigate_log_settings *s)
@@ -139,10 +195,16 @@ int navigate_parse(const navigate_options *o, imk_model *model, imk_navigate_log
         code = place_parse(o->position, &s->place);
     if (code < 0 && o->attitude)
         code = parse_attitude(o->attitude, s);
+    if (code < 0)
+        code = parse_velocity(o, s);
+    if (code < 0)
+        code = parse_position_sigma(o->position_sigma, s);
     if (code < 0 && o->heading)
         code = parse_heading(o->heading, s);
     if (code < 0)
         code = parse_stops(o, s);
+    if (code < 0)
+        code = navigate_parse_aids(o, s);
     if (code < 0 && o->model) {
         code = command_model(o->model, model, NULL);
         s->model = model;

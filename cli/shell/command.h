@@ -25,6 +25,7 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
     VERB(devices)                                                                                  \
     VERB(grade)                                                                                    \
     VERB(convert)                                                                                  \
+    VERB(join)                                                                                     \
     VERB(physics)                                                                                  \
     VERB(drift)                                                                                    \
     VERB(tune)                                                                                     \

@@ -209,6 +209,16 @@ const char *options_output_name(const char *name)
     return name;
 }
 
+static int add_text(const option *o, const char *text, option_texts *texts)
+{
+    if (!*text)
+        return command_misused("--%s: the value is empty", o->name);
+    if (texts->count == OPTION_TEXTS_MAX)
+        return command_misused("--%s is given more than %d times", o->name, OPTION_TEXTS_MAX);
+    texts->text[texts->count++] = text;
+    return -1;
+}
+
 static int set_value(const option *o, const option_group *group, const char *text, void *settings)
 {
     void *target = (char *)settings + group->offset + o->offset;
@@ -216,6 +226,8 @@ static int set_value(const option *o, const option_group *group, const char *tex
     case OPTION_FLAG:
         *(bool *)target = true;
         return -1;
+    case OPTION_TEXTS:
+        return add_text(o, text, target);
     case OPTION_TEXT:
     case OPTION_FILE:
     case OPTION_INTO:

@@ -4,6 +4,7 @@
 #ifndef IMUKIT_OPTIONS_H
 #define IMUKIT_OPTIONS_H
 
+#include "imukit/model.h"
 #include "imukit/units.h"
 
 #include <stdbool.h>
@@ -14,6 +15,7 @@
 typedef enum option_kind {
     OPTION_FLAG,     /* bool: true when given */
     OPTION_TEXT,     /* const char * */
+    OPTION_TEXTS,    /* option_texts: may be given several times */
     OPTION_FILE,     /* const char *: completed as a file name */
     OPTION_INTO,     /* the same, of a file that --output adds to and may replace */
     OPTION_OUTPUT,   /* the same, of a file that is written: see file_clash.h */
@@ -29,6 +31,12 @@ typedef struct option_integer {
     uint64_t value; /* the default otherwise */
     bool given;
 } option_integer;
+
+enum { OPTION_TEXTS_MAX = 8 };
+typedef struct option_texts {
+    size_t count;
+    const char *text[OPTION_TEXTS_MAX];
+} option_texts;
 
 typedef struct option {
     const char *name; /* without the dashes */
@@ -74,6 +82,20 @@ typedef struct example {
     {                                                                                              \
         "report", OPTION_OUTPUT, at, .value = "FILE.html", .help = text                            \
     }
+/* What a model does not state; 0: it stays unstated. */
+#define ASSUME_CLASS_OPTION(at)                                                                    \
+    {                                                                                              \
+        "assume-class", OPTION_CHOICE, at,                                                         \
+            .value = "CLASS", .choices = "none|own|strategic|navigation|tactical|AHRS|control",    \
+            .help =                                                                                \
+                "take typical values of a class for the terms that a model does not state, and "   \
+                "name each; own: of the class that fits what it states; default none"              \
+    }
+/* The class of such a choice above 0; IMK_GRADE_NONE: the model's own. */
+static inline imk_grade options_assumed_class(int choice)
+{
+    return choice > 1 ? (imk_grade)(choice - 2) : IMK_GRADE_NONE;
+}
 #define JSON_OPTION(at, text)                                                                      \
     {                                                                                              \
         "json", OPTION_FLAG, at, .help = text                                                      \
@@ -115,7 +137,7 @@ typedef struct example {
     }
 
 /* OPERANDS_MAX is room for the operands of most verbs; one that takes more makes its own. */
-enum { OPERANDS_MAX = 8, GROUPS_MAX = 4 };
+enum { OPERANDS_MAX = 8, GROUPS_MAX = 5 };
 
 /* One verb of the command. */
 typedef struct verb {

@@ -16,6 +16,8 @@ typedef struct simulate_options {
     const char *output, *format;
     imk_unit gyro_unit, accel_unit; /* scale 0: not given */
     const char *motion, *temperature, *truth, *field;
+    const char *aid, *aid_output, *aid_lever_arm;
+    double aid_rate, aid_until; /* NaN: not given */
     term_selection terms;
 } simulate_options;
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One run into one log, many into a directory, and the truth into another log. */
+/* One run into one log, many into a directory, and the truth and the aids into other logs. */
+#include "shell/aid_text.h"
 #include "shell/job_progress.h"
 #include "simulate_parts.h"
 
 #include "imukit/thread_pool.h"
 
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -78,6 +80,34 @@ static int simulate_truth(const simulate_options *o, const imk_model *model, con
     return status == IMK_OK ? -1 : command_error(&error, NULL);
 }
 
+/* What other instruments read. @return -1 or the exit code */
+static int simulate_aids(const simulate_options *o, const imk_model *model, const scene *s)
+{
+    imk_aid aid[IMK_AIDS_MAX];
+    size_t count = 0;
+    double arm[3] = {0}, arm_sigma[3] = {0};
+    int code = aid_text_parse("aid", o->aid, &count, aid);
+    if (code < 0 && o->aid_lever_arm)
+        code = aid_arm_parse("aid-lever-arm", o->aid_lever_arm, arm, arm_sigma);
+    if (code >= 0)
+        return code;
+    for (size_t k = 0; k < count; k++) {
+        aid[k].interval = isnan(o->aid_rate) ? 1.0 : 1.0 / o->aid_rate;
+        aid[k].from = 0.0;
+        aid[k].until = isnan(o->aid_until) ? (double)INFINITY : o->aid_until;
+        if (aid[k].kind == IMK_AID_ODOMETER)
+            continue;
+        memcpy(aid[k].lever_arm, arm, sizeof arm);
+        memcpy(aid[k].lever_arm_sigma, arm_sigma, sizeof arm_sigma);
+    }
+    imk_error error;
+    imk_log_sink log = {.path = o->aid_output, .fixed = true};
+    const imk_record_sink sink = imk_log_sink_of(&log);
+    imk_status status = imk_simulate_aids_run(model, &s->settings, count, aid, &sink, NULL, &error);
+    status = imk_log_sink_end(&log, status, &error);
+    return status == IMK_OK ? -1 : command_error(&error, NULL);
+}
+
 /* One log per run, DIR/run_000.csv and so on. */
 static int simulate_runs(const simulate_options *o, const imk_model *model, scene *s,
                          const imk_executor *executor)
@@ -106,6 +136,8 @@ static int write_logs(const simulate_options *o, const imk_model *model, scene *
 {
     /* A truth that cannot be written is known before the logs are made. */
     int code = o->truth ? simulate_truth(o, model, s, executor) : -1;
+    if (code < 0 && o->aid)
+        code = simulate_aids(o, model, s);
     if (code >= 0)
         return code;
     if (o->runs.given)

@@ -30,6 +30,18 @@ static const option simulate_option_table[] = {
              "bag, mcap or db3"},
     {"truth", OPTION_OUTPUT, AT(truth), .value = "FILE",
      .help = "write the true motion and the readings of perfect sensors, row by row"},
+    {"aid", OPTION_TEXT, AT(aid), .value = "AIDS",
+     .help = "write also what other instruments read of the motion, with their errors, such as "
+             "\"position 1 1 2 m, velocity 0.05 m/s\" (1 sigma)"},
+    {"aid-output", OPTION_OUTPUT, AT(aid_output), .value = "FILE",
+     .help = "where the readings of --aid are written"},
+    {"aid-rate", OPTION_QUANTITY, AT(aid_rate), .value = "RATE", .unit = "Hz",
+     .choices = "1e-6..1e6", .help = "rate of the readings of --aid; default 1Hz"},
+    {"aid-until", OPTION_QUANTITY, AT(aid_until), .value = "TIME", .unit = "s",
+     .help = "time of the last reading; default: the end"},
+    {"aid-lever-arm", OPTION_TEXT, AT(aid_lever_arm), .value = "LENGTHS",
+     .help = "from the unit to the antenna: forward, right, down, such as \"0.2 -0.5 -1.1 m\"; "
+             "default 0"},
     {"increments", OPTION_FLAG, AT(increments),
      .help = "write increments of angle and velocity (dtheta_x, dvel_x) instead of rates"},
     DECIMALS_OPTION(AT(decimals)),
@@ -77,7 +89,10 @@ static int check_run_folder(const simulate_options *o)
 {
     const struct {
         const char *option, *path;
-    } files[] = {{"truth", o->truth}, {"motion", o->motion}, {"temperature", o->temperature}};
+    } files[] = {{"truth", o->truth},
+                 {"motion", o->motion},
+                 {"temperature", o->temperature},
+                 {"aid-output", o->aid_output}};
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         const char *slash = files[i].path ? strrchr(files[i].path, '/') : NULL;
         const char *name = slash ? slash + 1 : files[i].path;
@@ -115,8 +130,27 @@ static int check_outputs(const simulate_options *o)
     return o->runs.given ? check_run_folder(o) : -1;
 }
 
+static int check_aid(const simulate_options *o)
+{
+    if (!o->aid &&
+        (o->aid_output || o->aid_lever_arm || !isnan(o->aid_rate) || !isnan(o->aid_until)))
+        return command_misused("--aid-%s is about --aid; add --aid \"position 1 m\", for instance",
+                               o->aid_output        ? "output"
+                               : o->aid_lever_arm   ? "lever-arm"
+                               : isnan(o->aid_rate) ? "until"
+                                                    : "rate");
+    if (o->aid && !o->aid_output)
+        return command_misused("--aid: add --aid-output FILE for the readings");
+    if (o->aid && o->runs.given)
+        return command_misused("--aid is for one run: use --run N in place of --runs N");
+    return -1;
+}
+
 static int check(const simulate_options *o)
 {
+    const int code = check_aid(o);
+    if (code >= 0)
+        return code;
     if (o->runs.given && o->runs.value > UINT32_MAX - o->run.value + 1)
         return command_misused("run numbers: expected at most %u", UINT32_MAX);
     return check_outputs(o);
@@ -135,8 +169,12 @@ static int simulate(const simulate_options *o, const imk_model *model)
 static int run(int count, char **words)
 {
     double missing = (double)NAN;
-    simulate_options o = {
-        .rate = missing, .duration = missing, .latitude = missing, .seed = {.value = 1}};
+    simulate_options o = {.rate = missing,
+                          .duration = missing,
+                          .latitude = missing,
+                          .aid_rate = missing,
+                          .aid_until = missing,
+                          .seed = {.value = 1}};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&simulate_verb, count, words, &o, operands);
     if (code < 0)

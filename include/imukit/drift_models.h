@@ -8,6 +8,7 @@
 #include "imukit/drift.h"
 #include "imukit/job.h"
 #include "imukit/model.h"
+#include "imukit/model_unstated.h"
 #include "imukit/units.h"
 
 IMK_BEGIN_C
@@ -34,9 +35,10 @@ typedef struct imk_drift_times {
  *  @param rate      sampling rate [Hz]
  *  @param curves    true: add times for curves, evenly in every decade and close enough to show
  *                   Schuler's period of 84 min
+ *  @param origin    from which the curves count [s]: 0, or the end of the aids (imk_drift_outage())
  *  @return IMK_ERROR_MEMORY, IMK_ERROR_RANGE (too many) */
 IMK_API imk_status imk_drift_times_choose(double duration, size_t count, const double *stated,
-                                          double wanted, double rate, bool curves,
+                                          double wanted, double rate, bool curves, double origin,
                                           const imk_allocator *allocator, imk_drift_times *times,
                                           imk_error *error);
 /** Free its arrays. */
@@ -50,6 +52,9 @@ typedef struct imk_drift_wanted {
     double goal;   /**< SI */
     imk_unit unit; /**< unit in which the goal was stated */
     double time;   /**< [s] */
+    /** Of an aided navigator. false: its filter keeps the gains that it has; true: it is made anew
+     *  for terms that are improved. */
+    bool retuned;
 } imk_drift_wanted;
 
 /** Settings of the job. Start from imk_drift_models_default(). */
@@ -60,12 +65,29 @@ typedef struct imk_drift_models_settings {
     bool calibrated; /**< true: analyse each model with its known values taken out; a single model
                         also without; default false */
     imk_drift_wanted want;
+    /** true: devices of the catalogue are analysed with typical values for what their sources leave
+     *  out (imk_model_assume_class() with `assumed_class`). It does not concern the models, for
+     *  which the caller does the same; default false */
+    bool assume;
+    imk_grade assumed_class;
 } imk_drift_models_settings;
 
 /** As imk_drift_default(), without a requirement. */
 IMK_API imk_drift_models_settings imk_drift_models_default(void);
 
 enum { IMK_DRIFT_MODELS_MAX = 8 };
+
+/** Terms that a model does not state are material above this share of the mean square error. */
+#define IMK_DRIFT_MATERIAL 0.05
+
+/** A term that the model does not state and that would matter: with typical values for all that is
+ *  not stated, it has more than IMK_DRIFT_MATERIAL of the mean square of a figure. */
+typedef struct imk_drift_missing {
+    imk_unstated_term term;
+    double share;                 /**< its largest share at the times looked at, 0 … 1 */
+    double time;                  /**< the time of this share [s] */
+    imk_drift_requirement figure; /**< the figure: DRMS, height, velocity, tilt or heading */
+} imk_drift_missing;
 
 /** One line of an error budget: one source at one time. */
 typedef struct imk_drift_share {
@@ -89,15 +111,24 @@ typedef struct imk_drift_case {
     size_t share_count; /**< number of sources with a share or a shift at that time, the largest
                            share first */
     imk_drift_share *share;
+    /** Share that correlations between terms have of the same variance, beyond the terms by
+     *  themselves (imk_drift_cross): it may be negative; 0: there are none. */
+    double correlation_share;
+    /** Terms that the model does not state and that would matter at the rows of the table, the
+     *  largest share first. If there are any, all figures are lower bounds. */
+    size_t missing_count;
+    imk_drift_missing missing[IMK_UNSTATED_MAX];
 } imk_drift_case;
 
 /** A device of the catalogue that may meet the requirement. */
 typedef struct imk_drift_candidate {
     const imk_device *device;
     imk_drift_figures figures;
-    bool usable;  /**< it has gyros and accelerometers, and the analysis succeeded */
-    bool no_bias; /**< its source does not state the run-to-run bias of the gyros or of the
-                     accelerometers */
+    bool usable; /**< it has gyros and accelerometers, and the analysis succeeded */
+    /** Terms that its source does not state and that would matter for the figure wanted: if there
+     *  are any, the figures are lower bounds. */
+    size_t missing_count;
+    imk_drift_missing missing[IMK_UNSTATED_MAX];
     bool no_memory;
 } imk_drift_candidate;
 
@@ -111,6 +142,9 @@ typedef struct imk_drift_answer {
     /** Their indices, the term that must improve most first. */
     size_t order[IMK_DRIFT_SOURCES_MAX];
     bool alone; /**< true: improving only one of them can be enough */
+    /** With `retuned`, the figure found with the factors of the allocation: the goal, within 0.2 %,
+     *  or more if it cannot be met. */
+    double reached;
     size_t candidate_count;
     imk_drift_candidate *candidate; /**< the best first */
 } imk_drift_answer;
@@ -129,6 +163,10 @@ typedef struct imk_drift_models {
     uint64_t run_count;
     imk_drift_figures *found, *low, *high; /**< figures and their 95 % intervals */
     size_t *used;                          /**< number of runs used */
+    /** Of an aided navigator: mean over the runs of the errors squared, normalised by the filter's
+     *  own covariance, and its degrees of freedom; 0: none. */
+    int nees_degrees;
+    double *nees;
 } imk_drift_models;
 
 /** Analyse models. The models, their names and the times must outlive the result.
@@ -143,10 +181,13 @@ IMK_API imk_status imk_drift_models_run(size_t count, const imk_model *const *mo
                                         const imk_drift_models_settings *settings,
                                         const imk_job *job, imk_drift_models **result,
                                         imk_error *error);
-/** Add statistics of Monte Carlo runs of the last case at the rows of the table (imk_drift_runs()).
- *  @param errors  [run][row][state], IMK_DRIFT_STATES states
+/** Add statistics of Monte Carlo runs of the last case at the rows of the table (imk_drift_runs(),
+ *  imk_drift_aided_runs()).
+ *  @param degrees  of the normalised errors squared (imk_drift_nees_degrees()); 0: there are none
+ *  @param errors   [run][row][state], IMK_DRIFT_STATES or, with degrees, IMK_DRIFT_AIDED_STATES
+ *                  states
  *  @return IMK_ERROR_MEMORY */
-IMK_API imk_status imk_drift_models_take_runs(imk_drift_models *models, size_t runs,
+IMK_API imk_status imk_drift_models_take_runs(imk_drift_models *models, size_t runs, int degrees,
                                               const double *errors, imk_error *error);
 /** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_drift_models_free(imk_drift_models *result);

@@ -12,9 +12,10 @@ IMK_BEGIN_C
 /** Rotation of the Earth in inertial space [rad/s], WGS84. */
 #define IMK_EARTH_RATE 7.292115e-5
 
-/** Magnitude of normal gravity [m/s^2] at a geodetic latitude [rad] and a height above the
- *  ellipsoid [m]: Somigliana's formula, and the expansion of second order in height (error below
- *  1e-6 m/s^2 up to 10 km). */
+/** Normal gravity down the ellipsoid's normal [m/s^2] at a geodetic latitude [rad] and a height
+ *  above the ellipsoid [m]: Somigliana's formula, and the expansion of second order in height
+ *  (error below 1e-6 m/s^2 up to 10 km). The magnitude differs by less than 4e-10 m/s^2 up to
+ *  10 km, as the component toward the equator is small; imk_gravity_ecef() has both. */
 IMK_API double imk_normal_gravity(double latitude, double height);
 
 /** The Earth's rotation in north-east-down axes [rad/s]. */
@@ -36,9 +37,11 @@ IMK_API imk_vector3 imk_ecef_from_geodetic(imk_geodetic place);
 IMK_API imk_geodetic imk_geodetic_from_ecef(imk_vector3 position);
 
 /** Normal gravity (gravitation and centrifugal force together) at an ECEF position, in ECEF axes
- *  [m/s^2]: the magnitude of imk_normal_gravity(), along the ellipsoid's normal. Only + - * / sqrt.
- *  Motion and navigation both use this gravity, so they agree. Not valid within 6000 km of the
- *  centre. */
+ *  [m/s^2]: imk_normal_gravity() down the ellipsoid's normal, and aloft a component toward the
+ *  equator, 8.1e-9 1/s^2 times height and sin(2 latitude): 8.1e-5 m/s^2 at 10 km and 45 deg, zero
+ *  on the ellipsoid. It is within 0.1 % of the closed ellipsoidal field from -10 to 1000 km and
+ *  within 2 % up to 3600 km. Only + - * / sqrt. Motion and navigation both use this gravity, so
+ *  they agree. Not valid within 6000 km of the centre. */
 IMK_API imk_vector3 imk_gravity_ecef(imk_vector3 position);
 
 /** Radii of curvature of the ellipsoid in the meridian and in the prime vertical [m]. */
@@ -46,6 +49,11 @@ IMK_API void imk_curvature_radii(double latitude, double *meridian, double *prim
 
 /** C_en: north, east and down at a place, as columns in ECEF axes. */
 IMK_API imk_matrix3 imk_ned_axes(double latitude, double longitude);
+
+/** North, east and down as a plumb line has them, along normal gravity, as columns in
+ *  north-east-down axes: what levelling by gravity finds. Aloft they are turned about east by the
+ *  component toward the equator, 8.3e-6 rad at 10 km and 45 deg; on the ellipsoid by nothing. */
+IMK_API imk_matrix3 imk_plumb_axes(imk_geodetic place);
 
 IMK_END_C
 #endif

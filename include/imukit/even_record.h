@@ -26,6 +26,7 @@ typedef struct imk_even_record {
     int column[IMK_LOG_COLUMNS_MAX]; /**< per channel: its column in the log; gyros, then
                                         accelerometers, or all other columns */
     double dt;                       /**< sample interval [s] */
+    double first_time;               /**< time of the first row [s]; 0 without a time column */
     size_t bridged;                  /**< samples that were interpolated */
     /** With IMK_GAPS_KEEP. missing: sample times without a row in the log (NaN in all channels);
      *  holes: runs of such samples; longest_hole: samples in the longest; unordered: rows left out

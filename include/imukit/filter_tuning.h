@@ -56,7 +56,7 @@ typedef struct imk_filter_tuning_settings {
      *  errors of the readings but fast noise and those of the clock, as a filter with updates
      *  learns it: a scale factor on gravity counts only as far as the attitude changes. */
     bool learned;
-    bool compensated;   /**< as in imk_drift_settings */
+    bool compensated;   /**< as in imk_drift_settings, without correlations of the model */
     bool per_axis;      /**< numbers of each axis, not of a triad; default false */
     double eigen_limit; /**< of the safe answer, > 0: largest eigenvalue of P_m^-1 P_t; 1.05 */
 } imk_filter_tuning_settings;

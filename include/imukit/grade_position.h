@@ -6,7 +6,7 @@
 #ifndef IMUKIT_GRADE_POSITION_H
 #define IMUKIT_GRADE_POSITION_H
 
-#include "imukit/drift.h"
+#include "imukit/drift_models.h"
 #include "imukit/job.h"
 #include "imukit/model.h"
 
@@ -54,6 +54,11 @@ typedef struct imk_graded {
     const char *no_position; /**< reason why no position error is computed (a constant string);
                                 NULL: it is computed, and the members below are valid */
     imk_grade_way way[IMK_GRADE_WAYS];
+    /** Terms that the model does not state and that would matter for the position after an hour or
+     *  a day, with the attitude given at the start. If there are any, all figures are lower bounds,
+     *  and the classes of the ways are the best that are possible. */
+    size_t missing_count;
+    imk_drift_missing missing[IMK_UNSTATED_MAX];
     bool compensation_matters;
     size_t share_count;
     imk_grade_share share[IMK_GRADE_SHARES]; /**< the largest shares of the horizontal variance

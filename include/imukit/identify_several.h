@@ -48,7 +48,9 @@ typedef struct imk_identify_several {
     imk_joint_agreement agreement[IMK_LOG_COLUMNS_MAX];
     bool differs[IMK_LOG_COLUMNS_MAX]; /**< the noise differs between runs (false alarm: 1 % over
                                           all channels) */
-    imk_repeatability bias[IMK_LOG_COLUMNS_MAX]; /**< of the mean, from run to run */
+    /** Of the mean, from run to run: on top of the noise that the joint model states, whose slow
+     *  flicker differs from run to run by itself. */
+    imk_repeatability bias[IMK_LOG_COLUMNS_MAX];
     /** @} */
     /** @name For runs at several rates
      *  The joint estimate is that of the longest record; joint.readings are these. There are no

@@ -10,6 +10,7 @@
 #ifndef IMUKIT_IMUKIT_H
 #define IMUKIT_IMUKIT_H
 
+#include "imukit/aiding.h"
 #include "imukit/alignment.h"
 #include "imukit/allan.h"
 #include "imukit/allan_fit.h"
@@ -43,11 +44,15 @@
 #include "imukit/linear_algebra.h"
 #include "imukit/magnetometer.h"
 #include "imukit/model.h"
+#include "imukit/model_join.h"
 #include "imukit/model_parameter.h"
+#include "imukit/model_unstated.h"
 #include "imukit/motion.h"
 #include "imukit/motion_script.h"
 #include "imukit/names.h"
 #include "imukit/navigate.h"
+#include "imukit/navigation_filter.h"
+#include "imukit/navigation_smoother.h"
 #include "imukit/noise.h"
 #include "imukit/noise_map.h"
 #include "imukit/procedure.h"
@@ -58,6 +63,8 @@
 #include "imukit/samples.h"
 #include "imukit/simulate.h"
 #include "imukit/spectrum.h"
+#include "imukit/standing_start.h"
+#include "imukit/standstill.h"
 #include "imukit/static_detection.h"
 #include "imukit/status.h"
 #include "imukit/technology_map.h"
@@ -65,6 +72,5 @@
 #include "imukit/thermal.h"
 #include "imukit/units.h"
 #include "imukit/utf8.h"
-#include "imukit/zero_velocity.h"
 
 #endif

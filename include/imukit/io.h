@@ -6,6 +6,7 @@
 #ifndef IMUKIT_IO_H
 #define IMUKIT_IO_H
 
+#include "imukit/aid_text.h"
 #include "imukit/campaign.h"
 #include "imukit/design_file.h"
 #include "imukit/figure_file.h"

@@ -8,7 +8,8 @@
  *  magnetometers are three imk_triad of the same type; `unit` below is rad/s for a gyro, m/s^2 for
  *  an accelerometer and T for a magnetometer. Hard iron is the bias of a magnetometer; soft iron,
  *  scale factors and misalignment together are its scale factor and cross-axis response.
- *  A term that is zero is absent. Equations: docs/theory. */
+ *  A term that is zero is absent; whether it is zero or only not stated is told in
+ *  model_unstated.h. Equations: docs/theory. */
 #ifndef IMUKIT_MODEL_H
 #define IMUKIT_MODEL_H
 
@@ -61,7 +62,8 @@ typedef struct imk_temperature_polynomial {
 
 typedef struct imk_bias {
     imk_axes fixed;         /**< [unit] */
-    imk_axes repeatability; /**< 1 sigma of the random constant of each run [unit] */
+    imk_axes repeatability; /**< 1 sigma of the random constant of each run [unit]: what comes on
+                               top of the noise, whose slow part also differs from run to run */
     imk_temperature_polynomial temperature;
     imk_axes temperature_rate;  /**< [unit/(K/s)] */
     imk_axes warm_up_amplitude; /**< [unit] */
@@ -100,12 +102,14 @@ typedef struct imk_noise {
     imk_density density;
     imk_axes white;            /**< N: angle or velocity random walk [unit/sqrt(Hz)] */
     imk_axes bias_instability; /**< B [unit]; the Allan floor is 0.664 B */
-    imk_axes random_walk;      /**< K: rate or acceleration random walk [unit/sqrt(s)] */
-    imk_axes ramp;             /**< R: rate or acceleration ramp [unit/s] */
-    imk_axes angle_white;      /**< A: white noise of the integrated output [unit s/sqrt(Hz)] */
-    imk_axes reading_noise;    /**< 1 sigma of each reading of the integrated output, whatever the
-                                  rate, such as counts behind a dither have [unit s] */
-    imk_axes quantization;     /**< Q = LSB/sqrt(12) of the integrated output [unit s] */
+    imk_scalar bias_instability_correlation_time; /**< T [s]: B^2/(2 pi f) down to 1/(2 pi T), flat
+                                  below; 0: IMK_FLICKER_TIME of noise.h, 1e6 s */
+    imk_axes random_walk;   /**< K: rate or acceleration random walk [unit/sqrt(s)] */
+    imk_axes ramp;          /**< R: rate or acceleration ramp [unit/s] */
+    imk_axes angle_white;   /**< A: white noise of the integrated output [unit s/sqrt(Hz)] */
+    imk_axes reading_noise; /**< 1 sigma of each reading of the integrated output, whatever the
+                               rate, such as counts behind a dither have [unit s] */
+    imk_axes quantization;  /**< Q = LSB/sqrt(12) of the integrated output [unit s] */
     int gauss_markov_count, sinusoid_count, resonance_count;
     struct imk_gauss_markov_term {
         imk_axes sigma;            /**< [unit] */
@@ -144,6 +148,8 @@ typedef struct imk_triad {
     imk_axes resolution;  /**< step of the output [unit] */
     imk_axes sensitivity; /**< nominal [count/unit]; 0: output in physical units */
     imk_axes zero_offset; /**< [count] */
+    /** Numbers that are 0 because they are stated to be, a bit each; see imk_model_state_zero(). */
+    uint64_t stated_zero;
 } imk_triad;
 
 typedef struct imk_timing {
@@ -264,15 +270,16 @@ IMK_API imk_status imk_model_validate(const imk_model *model, imk_error *error);
  *  A name is a key of the model file, a term ("angle_random_walk", "noise.gauss_markov"), a group
  *  ("bias", "noise"), or either of one sensor only ("gyro.bias.fixed", "gyro.fixed",
  *  "accel.noise"), or "timing" and its keys. Fields that are not errors always stay: directions,
- *  pendulous axes, sensitivity and zero offset.
+ *  pendulous axes, sensitivity and zero offset. Of the terms that imk_model_unstated() looks for,
+ *  those switched off are stated to be 0.
  *  @param keep  true: keep only the terms named; false: remove only the terms named
  *  @return IMK_ERROR_NAME_UNKNOWN (error.found: the name, error.expected: the nearest known name)
  */
 IMK_API imk_status imk_model_select(imk_model *model, bool keep, size_t count,
                                     const char *const *names, imk_error *error);
 
-/** True when two models would simulate the same bytes (name, evidence, correlation and sigmas
- * aside). */
+/** True when two models would simulate the same bytes (name, evidence, correlation, sigmas and
+ * whether a zero is stated aside). */
 IMK_API bool imk_model_equal(const imk_model *a, const imk_model *b);
 
 /* ---- catalogue: real devices and grade presets ---------------------------------------------- */
@@ -344,6 +351,11 @@ typedef struct imk_grade_result {
     double gyro_bias, accel_bias; /**< the figures compared; NaN when the model states none */
     const char *limiting; /**< "gyro bias" or "accelerometer bias", whichever decides `overall` (the
                              gyro's if both are of one class); "" when the model states neither */
+    /** The model has such sensors, but does not state their run-to-run bias or bias instability,
+     *  and with typical values (imk_model_unstated()) the figure compared would be larger by more
+     *  than 5 % of its square. The class is then the best that is possible, and no class. */
+    bool gyro_at_best, accel_at_best;
+    bool at_best; /**< of `overall`: either is, and the other is not below every class */
 } imk_grade_result;
 /** Grade of a model; see imk_grade_result. */
 IMK_API imk_grade_result imk_grade_model(const imk_model *model);

@@ -48,6 +48,25 @@ IMK_API void imk_navigation_state_to_ned(const imk_navigation_state *state, imk_
 IMK_API imk_vector3 imk_navigation_difference_ned(const imk_navigation_state *a,
                                                   const imk_navigation_state *b);
 
+/** Beyond 89 deg of latitude [rad] the heading is that of the grid: relative to the direction that
+ *  the meridian of longitude 0 has at the pole. North turns there by more than it is worth. */
+#define IMK_GRID_LATITUDE 1.5533430342749532
+
+/** What an error of the position turns the local level by, to first order: north, east and down
+ *  [rad] from north, east and down [m]. Beyond IMK_GRID_LATITUDE of the level with grid heading. */
+IMK_API imk_matrix3 imk_level_turn(imk_geodetic place);
+/** Error of the displayed attitude [rad]: that relative to the local level at the estimated
+ *  position, against the true one relative to the level at the true position. 0 and 1: rotation
+ *  vector about north and east by which the displayed vertical is wrong; 2: the heading, in
+ *  (-pi, pi]. For small errors psi - imk_level_turn() (position error), with psi of C_eb
+ *  (estimated) = exp([psi x]) C_eb (true). */
+IMK_API imk_vector3 imk_displayed_attitude_error(const imk_navigation_state *estimate,
+                                                 const imk_navigation_state *truth);
+/** The attitude q_eb that at an estimated position has the error phi: the inverse of
+ *  imk_displayed_attitude_error(). */
+IMK_API imk_quaternion imk_displayed_attitude(const imk_navigation_state *truth,
+                                              imk_vector3 position, imk_vector3 phi);
+
 enum {
     IMK_STRAPDOWN_BLOCK = 32,  /**< samples of a block of imk_strapdown_run(), at most */
     IMK_STRAPDOWN_CARRIED = 45 /**< numbers carried from sample to sample */

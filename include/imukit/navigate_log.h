@@ -5,13 +5,14 @@
  *
  *  The attitude at the start is either given or found while the unit is stationary (alignment.h). A
  *  strapdown mechanisation (navigate.h) continues from there. If the settings say so, zero-velocity
- *  updates correct it at stops (zero_velocity.h). */
+ *  updates correct it at stops, and readings of other instruments while it moves
+ *  (navigation_filter.h). */
 #ifndef IMUKIT_NAVIGATE_LOG_H
 #define IMUKIT_NAVIGATE_LOG_H
 
 #include "imukit/alignment.h"
 #include "imukit/even_record.h"
-#include "imukit/zero_velocity.h"
+#include "imukit/navigation_filter.h"
 
 IMK_BEGIN_C
 
@@ -29,13 +30,17 @@ typedef struct imk_navigate_log_settings {
     imk_geodetic place;  /**< place of the start; default 0, 0, 0 */
     double align; /**< time at the start during which the unit is stationary and finds its attitude
                      [s], 1 or more; 0: `attitude` is given; default 300 */
-    bool method_given; /**< true: `method` is used; false: the readings of the gyros decide the
-                          method */
+    bool method_given; /**< true: `method` is used; false: inertial where the gyros of the model
+                          find north to 0.2 rad, else means; without a model the readings decide */
     imk_alignment_method method;
     bool heading_given; /**< the heading is attitude[2], and the alignment finds roll and pitch
                            only; default false */
     double attitude[3]; /**< roll, pitch, yaw at the start [rad] */
     double attitude_sigma[3];
+    bool
+        velocity_given; /**< `velocity` is that of the start; only with align 0; default false: 0 */
+    double velocity[3]; /**< north, east, down [m/s]; down 0 while the height is held */
+    double velocity_sigma[3], position_sigma[3]; /**< north, east, down [m/s], [m]; default 0 */
     const imk_model *model; /**< errors of the sensors; must outlive the result; NULL: not known */
     const char *model_name; /**< its name in findings; must outlive the result */
     /** Stops used for zero-velocity updates; needs a model; default IMK_STOPS_NONE. The alignment
@@ -51,6 +56,26 @@ typedef struct imk_navigate_log_settings {
     double standard_gravity; /**< the value of g in columns in g, mg or ug; default 9.80665 m/s^2 */
     /** The track written as a record includes the acceleration; default false. */
     bool gravity_free;
+    /** Readings of aids: a record with a time column on the clock of the log, and columns of
+     *  position (latitude, longitude, height; ecef_x …; north, east, down of `place`), velocity
+     *  (velocity_north …), heading, baro_height, speed (of an odometer), each with its sigmas or
+     *  without (docs/navigate-a-log.md). Needs a model. Read during the call only; NULL: none. */
+    const imk_record_source *aids;
+    const char *aids_name; /**< its name in findings; must outlive the result */
+    /** Kinds of aids whose sigmas are stated, which are used instead of columns of sigmas; kinds
+     *  with neither are not used. `interval`, `from` and `until` are not used. */
+    size_t aid_count;
+    imk_aid aid[IMK_AIDS_MAX];
+    double lever_arm[3], lever_arm_sigma[3]; /**< of position, velocity and height, for kinds whose
+                                                sigmas are columns [m] */
+    double speed_lever_arm[3];               /**< of speed [m] */
+    double aid_delay;    /**< readings are older by this than their times say [s] */
+    double aid_interval; /**< shortest time between readings that are used [s]; 0: all are */
+    double aid_until;    /**< later readings are only compared; from the log's first row [s];
+                            default infinity */
+    /** Smooth the track backwards: later readings and stops correct earlier rows. Needs a model;
+     *  not with still_rotation. Memory: see navigation_smoother.h; default false. */
+    bool smooth;
 } imk_navigate_log_settings;
 
 /** Five minutes of alignment, height held. */
@@ -74,6 +99,29 @@ enum {
     IMK_TRACK_COLUMNS = IMK_TRACK_SIGMA + IMK_NAVIGATION_ERRORS
 };
 
+/** What became of the readings of one aid. */
+typedef struct imk_navigate_aid {
+    imk_aid aid;            /**< as the filter had it */
+    bool sigma_columns;     /**< each reading had its own sigmas */
+    bool held;              /**< values were repeated between readings, and were used once */
+    size_t readings;        /**< in the record */
+    size_t outside;         /**< before navigation began or after the log's end */
+    size_t disordered;      /**< not later than the reading before: left out */
+    size_t skipped;         /**< by aid_interval, or that the filter cannot use */
+    size_t compared;        /**< after aid_until */
+    double compared_square; /**< sum of the squared normalised innovations of these */
+    size_t compared_degrees;
+    double first, last;                /**< times of the readings used [s]; NaN: none */
+    double last_off[3], last_sigma[3]; /**< innovation of the last one compared, and its 1 sigma
+                                          [unit of the aid]; NaN: no such axis */
+    imk_navigation_filter_counts counts;
+    /** Innovations in order of time, for figures. */
+    size_t tested;
+    double *time;           /**< [s] */
+    double *innovation[3];  /**< per axis, divided by its 1 sigma; NaN: not measured */
+    unsigned char *verdict; /**< imk_aid_verdict; IMK_AID_NOT_USED: compared only */
+} imk_navigate_aid;
+
 /** Result of the job. */
 typedef struct imk_navigate_log {
     imk_navigate_log_settings settings;
@@ -83,16 +131,21 @@ typedef struct imk_navigate_log {
     size_t first;             /**< row where navigation begins, just after the alignment */
     double first_time;        /**< time of that row [s] */
     imk_alignment_method method;
+    bool coarse; /**< the biases of the gyros hide the Earth's rotation: north was not found */
     imk_alignment_result alignment;
     double attitude[3];         /**< roll, pitch, yaw at the start of navigation [rad] */
     double attitude_sigma[3];   /**< 1 sigma about north, east, down [rad]; 0: not known */
     imk_navigation_state start; /**< state at the start of navigation */
-    imk_zero_velocity_estimate end;
-    imk_zero_velocity_counts counts;
+    imk_navigation_filter_estimate end;
+    imk_navigation_filter_counts counts; /**< of zero-velocity updates */
+    size_t aid_count;
+    imk_navigate_aid aid[IMK_AID_KIND_COUNT];
     bool at_rest;   /**< the unit never moved, so the distance from the start is the error */
     double largest; /**< largest horizontal distance from the start [m] */
     size_t track_rows;
-    double *track[IMK_TRACK_COLUMNS];
+    double *track[IMK_TRACK_COLUMNS];    /**< smoothed, if the settings say so, but for the
+                                            acceleration */
+    double *filtered[IMK_TRACK_COLUMNS]; /**< then the track as filtered; else NULL */
 } imk_navigate_log;
 
 /** Navigate through the rows of a source.
@@ -102,7 +155,8 @@ typedef struct imk_navigate_log {
  *  @return errors of imk_even_record_load(); IMK_ERROR_RANGE (error.field: the setting); with a
  *          finding that says why: _COLUMN, _UNIT_UNKNOWN (the readings contradict the stated unit,
  *          or standard_gravity is set and no column is in g), _TOO_SHORT, _CONFLICT (near a pole),
- *          _UNSUPPORTED (the model), _NOT_FINITE */
+ *          _UNSUPPORTED (the model), _NOT_FINITE; of the aids _COLUMN, _UNIT_MISSING, _DIMENSION,
+ *          _EMPTY (no reading within the log) */
 IMK_API imk_status imk_navigate_log_run(const imk_record_source *source,
                                         const imk_navigate_log_settings *settings,
                                         const imk_job *job, imk_navigate_log **result,

@@ -53,6 +53,9 @@ enum {
     IMK_TERM_PHYSICS = 11,
     IMK_TERM_RESIDUAL = 12, /**< errors of known values left after calibration (drift.h) */
     IMK_TERM_INITIAL = 13,  /**< errors at the start of a navigation (drift.h) */
+    IMK_TERM_AID = 16,      /**< errors of aids; the instance is their kind (simulate_log.h), or
+                               their number (drift.h) */
+    IMK_TERM_GRAVITY = 17,  /**< deflection of gravity along a path (drift.h) */
 #define IMK_TERM_NUMBER(NAME, name, number) IMK_TERM_##NAME = number,
     IMK_NOISE_TERM_LIST(IMK_TERM_NUMBER)
 #undef IMK_TERM_NUMBER
@@ -158,31 +161,49 @@ IMK_API imk_status imk_filtered_white_start(imk_arma_state *state, double densit
 
 /* ---- flicker noise (bias instability): B [unit], S(f) = B^2/(2 pi f) ------------------------
  *
- *  The sum of 16 first-order stages whose correlation times are dt 4^j [KESHNER1982], each of
- *  variance (ln 4/pi) B^2, the fastest 1.208 times that. Stage j >= 2 changes only every 4^(j-1)
- *  samples, at a moment drawn at random, so that 2.33 normals a sample are enough and the sequence
- *  is still stationary. Its Allan deviation is that of ideal flicker noise within 0.12 % from 2 dt
- *  to 1e7 dt, 1 % to 1e8 dt, 2 % to 2e8 dt; its spectrum is 0.94 … 1.01 times B^2/(2 pi f)
- *  below 0.1/dt. Runs may be 2e9 samples long; the number of stages does not depend on the run.
- *  Sample 0 has the variance of all stages, about (2.7 B)^2. */
+ *  down to f = 1/(2 pi T), flat below, at B^2 T. It is the sum of first-order stages [KESHNER1982],
+ *  each of variance (ln 4/pi) B^2, whose correlation times are 0.85 T 4^-k, k = 0, 1 …, down to the
+ *  last one of at least 1.5 dt; a further stage stands for all that are faster. So the noise does
+ *  not depend on dt. Stages of 6 dt and more change only every 4, 16 … samples, at a moment drawn
+ * at random, so that 2.33 normals a sample are enough and the sequence is still stationary. Its
+ * Allan deviation is that of ideal flicker noise within 0.4 % from 2 dt to T/100, for every dt;
+ * then it falls, by 1 % at 0.1 T and by 11 % at T; at dt it is 1 to 3 % too large. Its spectrum is
+ * 0.89 … 1.04 times B^2/(2 pi f) from 10/T to 0.1/dt. Sample 0 has the variance of all stages: (2.2
+ * B)^2 at 1 s, (2.5 B)^2 at 0.01 s for T = 1e6 s. Where T < 1.8 dt, samples are white noise of
+ * density B^2 T. */
+
+/** T of flicker noise where none is stated [s]. */
+#define IMK_FLICKER_TIME 1e6
+
+typedef struct imk_flicker {
+    double instability;      /**< B [unit], >= 0 */
+    double correlation_time; /**< T [s], > 0 and at most 6e18 dt; 0: IMK_FLICKER_TIME */
+} imk_flicker;
 
 /** The flat part of the Allan variance, (2 ln 2/pi) B^2 [unit^2]; the same at every tau. */
 IMK_API double imk_flicker_allan_variance(double instability, double tau);
 /** Exact for the generated stages. */
-IMK_API double imk_flicker_sampled_allan_variance(double instability, double dt, size_t n);
+IMK_API double imk_flicker_sampled_allan_variance(imk_flicker flicker, double dt, size_t n);
+/** Variance of the mean of n >= 1 samples [unit^2], not of its change; exact for the generated
+ *  stages. It is what flicker noise makes of the bias from run to run, when each run is n dt long
+ *  and begins anew. */
+IMK_API double imk_flicker_mean_variance(imk_flicker flicker, double dt, size_t n);
 /** Exact for the generated stages. */
-IMK_API double imk_flicker_sampled_spectrum(double instability, double dt, double frequency);
+IMK_API double imk_flicker_sampled_spectrum(imk_flicker flicker, double dt, double frequency);
 /** Expected square, times dt, of cosine coefficient k (imk_cosine(), 1 <= k < n) of n samples: the
  *  spectrum at f = k/(2 n dt) less an effect of the ends of a finite record. The effect matters for
  *  processes that are correlated over the whole record: 22 % at k = 1, 1 % at k = 30. */
-IMK_API double imk_flicker_cosine_spectrum(double instability, double dt, size_t n, size_t k);
+IMK_API double imk_flicker_cosine_spectrum(imk_flicker flicker, double dt, size_t n, size_t k);
 
-enum { IMK_FLICKER_STAGES = 16, IMK_FLICKER_BUFFER = 64 };
+/** Stages at most; the normals drawn at a time for stages 3 … 2 + IMK_FLICKER_AHEAD. */
+enum { IMK_FLICKER_STAGES = 32, IMK_FLICKER_AHEAD = 6, IMK_FLICKER_BUFFER = 64 };
+/** Stages are counted from the fastest. */
 typedef struct imk_flicker_state {
     imk_random random;
     uint64_t stream; /**< stream of stage 0; stage j uses this number plus j in the instance bits */
     uint64_t next;   /**< next sample */
     uint64_t phase;  /**< stages j >= 2 change at samples k where 4^(j-1) divides k + phase */
+    size_t stages;   /**< how many there are: 1 + log4(T/dt), about */
     double sigma;    /**< of every stage but the fastest */
     double innovation;                    /**< of stages 1 and slower, of unit variance */
     double fast_innovation;               /**< of stage 0 */
@@ -191,12 +212,13 @@ typedef struct imk_flicker_state {
     double value[IMK_FLICKER_STAGES];     /**< of the held stages, of unit variance */
     double above[IMK_FLICKER_STAGES + 1]; /**< sums of value[j] and slower stages */
     uint64_t changes[IMK_FLICKER_STAGES]; /**< of the held stages so far */
-    double ahead[IMK_FLICKER_STAGES][IMK_FLICKER_BUFFER]; /**< innovations of stages 3 … */
+    double ahead[IMK_FLICKER_AHEAD][IMK_FLICKER_BUFFER]; /**< normals of stages 3 … */
     imk_noise_block block;
 } imk_flicker_state;
-/** Start flicker noise of instability B [unit]. It uses the streams of 16 instances: `stream` and
- *  the next 15. */
-IMK_API imk_status imk_flicker_start(imk_flicker_state *state, double instability, double dt,
+/** Start flicker noise. It uses the streams of as many instances as it has stages, 32 at most:
+ *  `stream` and the next ones. 21 are enough at 1 MHz for T = 1e6 s. @return IMK_ERROR_RANGE also
+ *  for a correlation time below 0 or beyond 6e18 dt */
+IMK_API imk_status imk_flicker_start(imk_flicker_state *state, imk_flicker flicker, double dt,
                                      imk_random random, uint64_t stream);
 /** Add the next `count` samples. */
 IMK_API void imk_flicker_add(imk_flicker_state *state, size_t count, double *out);

@@ -74,6 +74,8 @@ typedef struct imk_graded_several {
     size_t count;
     const imk_graded *const *graded;
     const char *const *name;
+    const imk_unstated *assumed; /**< `count`: what was assumed of each (imk_model_assume_class());
+                                    NULL: nothing was */
 } imk_graded_several;
 /** True when a model states enough for a map; with IMK_GRADE_MAPS, for any map. */
 IMK_API bool imk_grade_stands(const imk_graded_several *r, imk_grade_map map);
@@ -177,8 +179,8 @@ IMK_API size_t imk_calibrate_failure(const imk_calibrate_log *session, const imk
 
 /** @name Drift
  *  @{ */
-/** Reasons not to trust the figures: terms left out, errors beyond the linear range, Monte Carlo
- *  runs that differ. All are warnings. */
+/** Reasons not to trust the figures: terms not stated, terms left out, errors beyond the linear
+ * range, Monte Carlo runs that differ. All are warnings. */
 IMK_API imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result);
 
 /** Data shown with the figures. */
@@ -188,6 +190,10 @@ typedef struct imk_drift_shown {
     imk_verdict verdict;
     const imk_result *model; /**< data of the last model under the key "model", from which values of
                                 terms are shown; NULL: they are not shown */
+    const imk_unstated *assumed; /**< one for each model: what was assumed of it
+                                    (imk_model_assume_class()); NULL: nothing was */
+    const char *filter_model; /**< file or name of the model that the filter is made for; NULL: that
+                                 of the unit */
 } imk_drift_shown;
 
 /** Show the growth of errors, budgets, runs, the answer to the requirement, and figures. */

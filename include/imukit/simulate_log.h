@@ -4,6 +4,7 @@
 #ifndef IMUKIT_SIMULATE_LOG_H
 #define IMUKIT_SIMULATE_LOG_H
 
+#include "imukit/aiding.h"
 #include "imukit/job.h"
 #include "imukit/record.h"
 #include "imukit/simulate.h"
@@ -49,6 +50,20 @@ IMK_API imk_status imk_simulate_truth_run(const imk_model *model,
                                           const imk_simulate_log_settings *settings,
                                           const imk_record_sink *sink, const imk_job *job,
                                           imk_error *error);
+
+/** Write what other instruments read of the motion, with their errors: a row each `interval`, from
+ *  `from` to `until` or the end of the log, with the time, the readings of all aids and the 1 sigma
+ *  of their white errors, in columns that imukit navigate knows. The errors of seed and run are the
+ *  same at every call.
+ *  @param aid_count,aid  1 … IMK_AIDS_MAX, of different kinds that an instrument reads, with the
+ *                        same interval, from and until
+ *  @return errors of imk_simulate_log_run() and imk_aid_validate(); IMK_ERROR_CONFLICT (times that
+ *          differ, no Earth), _UNSUPPORTED (a recorded motion, zero velocity) */
+IMK_API imk_status imk_simulate_aids_run(const imk_model *model,
+                                         const imk_simulate_log_settings *settings,
+                                         size_t aid_count, const imk_aid *aid,
+                                         const imk_record_sink *sink, const imk_job *job,
+                                         imk_error *error);
 
 IMK_END_C
 #endif

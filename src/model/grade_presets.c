@@ -12,7 +12,7 @@
 
 const imki_device_entry imki_grade_presets[IMKI_PRESETS] = {
     {.device = {"strategic", "strategic", SOURCE,
-                "Claim 1 nmi in 24 h; computed CEP 0.47 nmi at 24 h, 0.061 nmi at 1 h (at rest at "
+                "Claim 1 nmi in 24 h; computed CEP 0.43 nmi at 24 h, 0.056 nmi at 1 h (at rest at "
                 "45 deg N, perfect initial attitude). Biases at the class limit of 0.005 deg/h "
                 "would give 3.4 nmi: the claim needs about 0.00145 deg/h.",
                 true},
@@ -37,8 +37,8 @@ const imki_device_entry imki_grade_presets[IMKI_PRESETS] = {
                .misalignment = 0.002,
                .k2 = 1}},
     {.device = {"navigation", "navigation", SOURCE,
-                "Claim 1 nmi/h with biases within 0.01 deg/h and 50 ug; computed CEP 0.75 nmi at 1 "
-                "h, 6.3 nmi at 24 h (at rest at 45 deg N, perfect initial attitude).",
+                "Claim 1 nmi/h with biases within 0.01 deg/h and 50 ug; computed CEP 0.71 nmi at 1 "
+                "h, 6.0 nmi at 24 h (at rest at 45 deg N, perfect initial attitude).",
                 true},
      .method = CLASS_METHOD,
      .gyro = {.present = true,
@@ -61,8 +61,8 @@ const imki_device_entry imki_grade_presets[IMKI_PRESETS] = {
                .misalignment = 0.01,
                .k2 = 10}},
     {.device = {"tactical", "tactical", SOURCE,
-                "Claim more than 10 nmi/h with biases within 1 deg/h and 1 mg; computed CEP 83 nmi "
-                "at 1 h, 890 nmi at 24 h (at rest at 45 deg N, perfect initial attitude), of which "
+                "Claim more than 10 nmi/h with biases within 1 deg/h and 1 mg; computed CEP 80 nmi "
+                "at 1 h, 870 nmi at 24 h (at rest at 45 deg N, perfect initial attitude), of which "
                 "the gyro biases make nearly all.",
                 true},
      .method = CLASS_METHOD,
@@ -88,7 +88,7 @@ const imki_device_entry imki_grade_presets[IMKI_PRESETS] = {
                .misalignment = 0.2,
                .k2 = 50}},
     {.device = {"AHRS", "AHRS", SOURCE,
-                "No claim of position; biases within 10 deg/h and 1 mg. Computed CEP 36 m at 60 s "
+                "No claim of position; biases within 10 deg/h and 1 mg. Computed CEP 35 m at 60 s "
                 "(at rest, perfect initial attitude).",
                 true},
      .method = CLASS_METHOD,

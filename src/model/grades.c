@@ -2,9 +2,10 @@
 /* The five classes of inertial units, and the class of a model by its biases. The table as commonly
  * printed names no spinning wheels but the suspended one: "floated", "DTG" and "wheel" are our
  * addition, by the regions of technology_map.c. */
-#include "imukit/model.h"
+#include "imukit/model_unstated.h"
 
 #include <math.h>
+#include <string.h>
 
 #define DEGREES_PER_HOUR (3.14159265358979323846 / 180 / 3600) /* [rad/s] */
 #define MICRO_G (9.80665e-6)                                   /* [m/s^2] */
@@ -63,6 +64,25 @@ static imk_grade grade_of(double bias, bool gyro)
     return IMK_GRADE_NONE;
 }
 
+/* What is not stated of the biases would matter, if it were typical of the class. Below every class
+ * nothing makes it worse. */
+static bool is_at_best(const imk_model *model, int sensor, double bias, imk_grade grade)
+{
+    const double material = 0.05;
+    double square = 0;
+    imk_unstated unstated;
+    if (!imk_model_triad(model, sensor)->present || (!isnan(bias) && grade == IMK_GRADE_NONE))
+        return false;
+    imk_model_unstated(model, &unstated);
+    for (size_t i = 0; i < unstated.count; i++) {
+        const imk_unstated_term *term = &unstated.term[i];
+        if (term->sensor == sensor && (strcmp(term->key, "bias.repeatability") == 0 ||
+                                       strcmp(term->key, "noise.bias_instability") == 0))
+            square += term->typical * term->typical;
+    }
+    return isnan(bias) || square > material * (square + bias * bias);
+}
+
 imk_grade_result imk_grade_model(const imk_model *model)
 {
     imk_grade_result result;
@@ -75,6 +95,10 @@ imk_grade_result imk_grade_model(const imk_model *model)
     bool gyro_decides = has_gyro && (!has_accel || result.gyro >= result.accel);
     result.overall = gyro_decides ? result.gyro : result.accel;
     result.limiting = gyro_decides ? "gyro bias" : has_accel ? "accelerometer bias" : "";
+    result.gyro_at_best = is_at_best(model, IMK_GYRO, result.gyro_bias, result.gyro);
+    result.accel_at_best = is_at_best(model, IMK_ACCEL, result.accel_bias, result.accel);
+    const bool is_below = (has_gyro || has_accel) && result.overall == IMK_GRADE_NONE;
+    result.at_best = !is_below && (result.gyro_at_best || result.accel_at_best);
     return result;
 }
 

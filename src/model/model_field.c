@@ -21,6 +21,13 @@ int imki_row_length(imki_shape shape)
     return shape == IMKI_QUADRATIC ? 6 : three ? 3 : 1;
 }
 
+int imki_turned_element(const imki_field *field, int k, int turn)
+{
+    const bool turns = imki_row_length(field->shape) > 1 &&
+                       field->offset != offsetof(imk_triad, nonlinearity.cross_products);
+    return turns ? k / 3 * 3 + (k + turn) % 3 : k;
+}
+
 const double *imki_field_values(const imki_field *field, const void *base)
 {
     /* Every one of the structs begins with its values. */
@@ -165,6 +172,24 @@ bool imki_field_equal(const imki_field *field, const imk_triad *a, const imk_tri
     default:
         return imki_numbers_equal(field, a, b, a->axis_count, with_sigmas);
     }
+}
+
+/* Another way to state a field has its bit. */
+uint64_t imki_field_bit(const imki_field *field)
+{
+    const bool plain = field->shape == IMKI_SCALAR || field->shape == IMKI_AXES ||
+                       field->shape == IMKI_OFF_DIAGONAL || field->shape == IMKI_ROWS ||
+                       field->shape == IMKI_QUADRATIC;
+    size_t index = 0;
+    while (imki_triad_fields[index].offset != field->offset)
+        index++;
+    return plain ? UINT64_C(1) << index : 0;
+}
+
+bool imki_field_stated_zero(const imki_field *field, const imk_triad *triad)
+{
+    const uint64_t bit = imki_field_bit(field);
+    return (triad->stated_zero & bit) != 0 && imki_field_absent(field, triad);
 }
 
 static bool is_standard_triad(const imk_triad *triad)

@@ -90,6 +90,9 @@ const imki_field imki_triad_fields[] = {
      UNITS("deg/h", "ug", "nT"), NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
     {ALL("noise.allan_floor"), IMKI_AXES, IMKI_FLOOR, AT(noise.bias_instability), NO_COUNT,
      UNITS("deg/h", "ug", "nT"), NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
+    {ALL("noise.bias_instability_correlation_time"), IMKI_SCALAR, IMKI_COMPANION,
+     AT(noise.bias_instability_correlation_time), NO_COUNT, UNIT("s"), NO_UNITS, UNIT("s"), 0.0,
+     1e9}, /* what imk_flicker_start() takes up to 6 GHz */
     {UNITS("noise.rate_random_walk", "noise.acceleration_random_walk", "noise.random_walk"),
      IMKI_AXES, 0, AT(noise.random_walk), NO_COUNT,
      UNITS("deg/h/sqrt(h)", "ug/sqrt(h)", "nT/sqrt(h)"), NO_UNITS,
@@ -124,6 +127,8 @@ const imki_field imki_triad_fields[] = {
      NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
 };
 const size_t imki_triad_field_count = sizeof imki_triad_fields / sizeof imki_triad_fields[0];
+_Static_assert(sizeof imki_triad_fields / sizeof imki_triad_fields[0] <= 64,
+               "stated_zero has a bit for each field");
 
 /* ---- terms ----------------------------------------------------------------------------------- */
 

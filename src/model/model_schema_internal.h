@@ -74,6 +74,11 @@ const char *imki_polynomial_unit(const imki_field *field, int kind, int order);
 /* Numbers of a row of this shape: 3 or 6; 1 for axes and scalars. */
 int imki_row_length(imki_shape shape);
 
+/* Where number k of a row goes when its sensor is turned on by `turn` body axes in cyclic order:
+ * squares and the products xy, yz, zx turn as components do. Kip, Kio, Kpo are of the sensor
+ * itself. */
+int imki_turned_element(const imki_field *field, int k, int turn);
+
 /* Value and sigma arrays of a field of shape scalar … quadratic: row i, number j at
  * [i * imki_row_length() + j]. `base` is the triad, the list element or the timing. */
 const double *imki_field_values(const imki_field *field, const void *base);
@@ -91,7 +96,16 @@ int imki_list_count(const imki_field *field, const imk_triad *triad);
 bool imki_field_equal(const imki_field *field, const imk_triad *a, const imk_triad *b,
                       bool with_sigmas);
 
-/* True when the field has its default in the triad, so that it need not be written. */
+/* Bit of a field in stated_zero; 0: the field is no set of plain numbers. */
+uint64_t imki_field_bit(const imki_field *field);
+/* True when the numbers of the field are 0 and stated to be. */
+bool imki_field_stated_zero(const imki_field *field, const imk_triad *triad);
+
+/* Terms without which a sensor's errors are not known: those that model_unstated.c looks for. */
+bool imki_field_expected(const imki_field *field, int kind);
+
+/* True when the field has its default in the triad, so that it need not be written unless it is
+ * stated to be zero. */
 bool imki_field_absent(const imki_field *field, const imk_triad *triad);
 
 /* The same of the numbers of a field of shape scalar … quadratic. */

@@ -212,8 +212,11 @@ imk_status imk_model_select(imk_model *model, bool keep, size_t count, const cha
         for (size_t i = 0; i < imki_triad_field_count; i++) {
             const imki_field *field = &imki_triad_fields[i];
             if (field->path[kind] && !is_no_error(field) &&
-                is_named(field, kind, keep, count, names) != keep)
+                is_named(field, kind, keep, count, names) != keep) {
                 clear(field, triads[kind]);
+                if (triads[kind]->present && imki_field_expected(field, kind))
+                    triads[kind]->stated_zero |= imki_field_bit(field);
+            }
         }
     for (size_t i = 0; i < imki_timing_field_count; i++) {
         bool named = false;

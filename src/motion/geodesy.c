@@ -61,3 +61,13 @@ imk_matrix3 imk_ned_axes(double latitude, double longitude)
     const double sl = imk_sin(longitude), cl = imk_cos(longitude);
     return (imk_matrix3){{{-sp * cl, -sl, -cp * cl}, {-sp * sl, cl, -cp * sl}, {cp, 0.0, -sp}}};
 }
+
+imk_matrix3 imk_plumb_axes(imk_geodetic place)
+{
+    place.longitude = 0.0;
+    const imk_vector3 gravity =
+        imk_matrix3_apply(imk_matrix3_transpose(imk_ned_axes(place.latitude, 0.0)),
+                          imk_gravity_ecef(imk_ecef_from_geodetic(place)));
+    const double g = imk_vector3_norm(gravity), c = gravity.v[2] / g, s = gravity.v[0] / g;
+    return (imk_matrix3){{{c, 0.0, s}, {0.0, 1.0, 0.0}, {-s, 0.0, c}}};
+}

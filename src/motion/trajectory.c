@@ -268,11 +268,7 @@ void imk_trajectory_state(const imk_trajectory *trajectory, double time, imk_mot
     imki_cursor cursor;
     imki_instant instant;
     imki_cursor_start(&cursor, trajectory, time);
-    const imk_trajectory_piece *piece = cursor.piece;
-    double first, last;
-    imk_trajectory_span(trajectory, &first, &last);
-    if (time == last) /* still under way */
-        piece = &trajectory->piece[trajectory->piece_count - 1];
+    const imk_trajectory_piece *piece = imki_cursor_at(&cursor, time);
     imki_instant_of(trajectory, piece, time, &instant);
     memset(state, 0, sizeof *state);
     state->time = time;

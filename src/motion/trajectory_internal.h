@@ -28,13 +28,13 @@ typedef struct imki_means {
     double *rate[3], *acceleration[3], *force[3];
 } imki_means;
 
-/* The piece at a time, at rest outside the span. */
+/* The piece at a time. Outside the span the motion goes on as it is at the end of it. */
 typedef struct imki_cursor {
     const imk_trajectory *trajectory;
     size_t next;                       /* index of the piece after it */
-    const imk_trajectory_piece *piece; /* may be `rest` */
+    const imk_trajectory_piece *piece; /* may be `beyond` */
     double end;                        /* of the piece */
-    imk_trajectory_piece rest;
+    imk_trajectory_piece beyond;
 } imki_cursor;
 
 /* Begin at a time: the last piece that starts at or before it. */
@@ -42,6 +42,10 @@ void imki_cursor_start(imki_cursor *cursor, const imk_trajectory *trajectory, do
 
 /* Go on to the piece that holds `time`, which is not before the present one. */
 void imki_cursor_advance(imki_cursor *cursor, double time);
+
+/* The piece for the state at an instant, not before the present piece: at the end of the
+ * trajectory, and later by rounding, still the last one. */
+const imk_trajectory_piece *imki_cursor_at(imki_cursor *cursor, double time);
 
 /* Means over the first `count` intervals. The bits for one interval do not depend on the others,
  * nor on the kernel. */

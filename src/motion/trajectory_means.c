@@ -26,32 +26,45 @@ static kernel_set kernels_of(imk_kernel kernel)
 
 /* ---- the piece at a time --------------------------------------------------------------------- */
 
-/* A piece that stays where `piece` is at s. */
-static void rest_at(const imk_trajectory_piece *piece, double s, imk_trajectory_piece *rest)
+/* A piece without accelerations that goes on from where `piece` is at s, with its velocity and its
+ * angular rate. What changes the norm of the quaternion only is left out, so that it never gets 0.
+ */
+static void go_on_from(const imk_trajectory_piece *piece, double s, imk_trajectory_piece *on)
 {
-    memset(rest, 0, sizeof *rest);
-    rest->start = piece->start;
+    memset(on, 0, sizeof *on);
+    on->start = piece->start + s;
+    double square = 0.0, growth = 0.0;
     for (int i = 0; i < 3; i++)
-        for (int power = 6; power >= 0; power--)
-            rest->position[i][0] = rest->position[i][0] * s + piece->position[i][power];
+        for (int power = 6; power >= 0; power--) {
+            on->position[i][1] = on->position[i][1] * s + on->position[i][0];
+            on->position[i][0] = on->position[i][0] * s + piece->position[i][power];
+        }
+    for (int i = 0; i < 4; i++) {
+        double *const q = on->quaternion[i];
+        for (int power = 5; power >= 0; power--) {
+            q[1] = q[1] * s + q[0];
+            q[0] = q[0] * s + piece->quaternion[i][power];
+        }
+        square += q[0] * q[0];
+        growth += q[0] * q[1];
+    }
     for (int i = 0; i < 4; i++)
-        for (int power = 5; power >= 0; power--)
-            rest->quaternion[i][0] = rest->quaternion[i][0] * s + piece->quaternion[i][power];
+        on->quaternion[i][1] -= on->quaternion[i][0] * (growth / square);
 }
 
-/* Enter the piece before `next`, or the rest before or after all of them. */
+/* Enter the piece before `next`, or what is before or after all of them. */
 static void enter(imki_cursor *cursor)
 {
     const imk_trajectory *trajectory = cursor->trajectory;
     const imk_trajectory_piece *piece = trajectory->piece;
     const size_t count = trajectory->piece_count, next = cursor->next;
-    cursor->piece = &cursor->rest;
+    cursor->piece = &cursor->beyond;
     cursor->end = (double)INFINITY;
     if (next == 0) {
-        rest_at(&piece[0], 0.0, &cursor->rest);
+        go_on_from(&piece[0], 0.0, &cursor->beyond);
         cursor->end = piece[0].start;
     } else if (next > count) {
-        rest_at(&piece[count - 1], piece[count - 1].length, &cursor->rest);
+        go_on_from(&piece[count - 1], piece[count - 1].length, &cursor->beyond);
     } else {
         cursor->piece = &piece[next - 1];
         cursor->end =
@@ -81,6 +94,23 @@ void imki_cursor_advance(imki_cursor *cursor, double time)
         cursor->next++;
         enter(cursor);
     }
+}
+
+/* By how much a time may be past the end by rounding: sums of steps, rows over rates and times in
+ * text do not meet in the last digits. */
+static double rounding_at(const imk_trajectory_piece *piece, double end)
+{
+    const double of_piece = 1e-6, of_time = 0x1p-48;
+    return of_piece * piece->length + of_time * fmax(fabs(piece->start), fabs(end));
+}
+
+const imk_trajectory_piece *imki_cursor_at(imki_cursor *cursor, double time)
+{
+    const imk_trajectory *trajectory = cursor->trajectory;
+    const imk_trajectory_piece *last = &trajectory->piece[trajectory->piece_count - 1];
+    const double end = last->start + last->length;
+    imki_cursor_advance(cursor, time);
+    return time >= end && time - end <= rounding_at(last, end) ? last : cursor->piece;
 }
 
 static bool is_constant(const imk_trajectory *trajectory, const imk_trajectory_piece *piece)
@@ -148,8 +178,8 @@ static void add_sample(const kernel_set *kernels, imki_cursor *cursor, size_t k,
         batch->intervals.begin[i] = begin;
         batch->intervals.end[i] = end;
         batch->intervals.piece[i] = cursor->piece;
-        /* A rest piece is overwritten when the cursor moves on. */
-        if (batch->count == IMKI_INTERVALS || cursor->piece == &cursor->rest)
+        /* A piece beyond the ends is overwritten when the cursor moves on. */
+        if (batch->count == IMKI_INTERVALS || cursor->piece == &cursor->beyond)
             finish_batch(kernels, cursor->trajectory, boundary, means, batch);
         if (last)
             return;

@@ -53,11 +53,11 @@ typedef enum imki_process_kind {
 typedef struct imki_process {
     imki_process_kind kind;
     double size;
-    double share;     /* of a variance of size^2; 1 save for the stages of flicker */
+    double share;     /* of a variance or density of size^2; 1 save for flicker */
     double time;      /* [s] */
     double frequency; /* [Hz] */
     double q;
-    bool held; /* its values change less often than every sample */
+    bool matched; /* 2 v T is also the density of its samples at 0 Hz */
 } imki_process;
 
 enum { IMKI_PROCESSES_MAX = IMK_FLICKER_STAGES };

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Random numbers of the instruments. Instances of a stream: 0-63 draws, 64-71 constants of the
- * run, 128 + 16 k … the stages of flicker noise k. Terms: IMK_TERM_PHYSICS + 256 times the
+ * run, 128 + 21 k … the stages of flicker noise k < 6 (enough up to 1.9 MHz; beyond, the
+ * slowest shares the numbers of the fastest of the next). Terms: IMK_TERM_PHYSICS + 256 times the
  * occasion. */
 #include "physics_internal.h"
 
-enum { CONSTANTS = 64, FLICKERS = 128, FLICKER_INSTANCES = 16 };
+enum { CONSTANTS = 64, FLICKERS = 128, FLICKER_INSTANCES = 21 };
 
 static uint64_t stream_of(const imk_physics_settings *settings, int occasion, int instance)
 {
@@ -49,7 +50,7 @@ void imki_wander_start(imki_wander *wander, const imk_physics_settings *settings
     wander->position = IMKI_WANDER_BLOCK;
     wander->flickers =
         settings->noise && instability > 0.0 &&
-        imk_flicker_start(&wander->flicker, instability, 1.0 / settings->rate,
+        imk_flicker_start(&wander->flicker, (imk_flicker){instability, 0}, 1.0 / settings->rate,
                           imk_random_seeded(settings->seed),
                           stream_of(settings, settings->occasion,
                                     FLICKERS + FLICKER_INSTANCES * source)) == IMK_OK;

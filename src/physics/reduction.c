@@ -61,25 +61,21 @@ double imki_reduction_offset(imk_triad *triad, double u, double per_kelvin)
     return slope;
 }
 
-/* Component k of axis 0 becomes component (k + axis) mod 3 of axis `axis`. Squares turn as
- * components do; so do the products xy, yz, zx. */
-static void copy_row(double *row, int length, bool turns)
+static void copy_row(const imki_field *field, double *row)
 {
+    const int length = imki_row_length(field->shape);
     for (int axis = 1; axis < 3; axis++)
         for (int k = 0; k < length; k++)
-            row[axis * length + (turns ? k / 3 * 3 + (k + axis) % 3 : k)] = row[k];
+            row[axis * length + imki_turned_element(field, k, axis)] = row[k];
 }
 
 static void copy_field(const imki_field *field, void *base)
 {
     const int length = imki_row_length(field->shape);
     double *value = (double *)(void *)((char *)base + field->offset);
-    /* Kip, Kio, Kpo are of the axis itself. */
-    const bool turns =
-        length > 1 && field->offset != offsetof(imk_triad, nonlinearity.cross_products);
-    copy_row(value, length, turns);
+    copy_row(field, value);
     if (field->shape != IMKI_PENDULOUS) /* the sigmas stand behind the values */
-        copy_row(value + (ptrdiff_t)IMK_AXES_MAX * length, length, turns);
+        copy_row(field, value + (ptrdiff_t)IMK_AXES_MAX * length);
 }
 
 static void copy_list(const imki_field *field, imk_triad *triad)
@@ -90,11 +86,11 @@ static void copy_list(const imki_field *field, imk_triad *triad)
             copy_field(&list.field[j], (char *)triad + field->offset + i * list.size);
 }
 
-static void copy_polynomial(imk_temperature_polynomial *polynomial)
+static void copy_polynomial(const imki_field *field, imk_temperature_polynomial *polynomial)
 {
     for (int k = 0; k < IMK_TEMPERATURE_ORDER_MAX; k++) {
-        copy_row(polynomial->coefficient[k].value, 1, false);
-        copy_row(polynomial->coefficient[k].sigma, 1, false);
+        copy_row(field, polynomial->coefficient[k].value);
+        copy_row(field, polynomial->coefficient[k].sigma);
     }
 }
 
@@ -108,7 +104,8 @@ static void three_axes(imk_triad *triad)
         case IMKI_DIRECTION:
             break;
         case IMKI_POLYNOMIAL:
-            copy_polynomial((imk_temperature_polynomial *)(void *)((char *)triad + field->offset));
+            copy_polynomial(field,
+                            (imk_temperature_polynomial *)(void *)((char *)triad + field->offset));
             break;
         case IMKI_LIST:
             copy_list(field, triad);

@@ -355,10 +355,40 @@ static const struct message {
     {"axes", "the angle between force and rotation fits latitude {0.1f} deg, not {1.1f} deg: "
              "{2?}the sign of the latitude, of all gyros or of all accelerometers is wrong{2!}the "
              "axes are not forward-right-down (state them with --axes), or a bias is large"},
+    {"north_unknown", "the biases of the gyros {0?}in the model hide{0!}hide{?} the Earth's "
+                      "rotation, so north cannot "
+                      "be found: the heading at the start is a guess; add --heading"},
     {"start_acceleration",
      "with the attitude given, the log begins with an acceleration of {0.3g} m/s^2: {1?}the unit "
      "of the accelerometers is probably {other}, not {name}{1!}the attitude, --axes or the unit of "
      "the accelerometers is wrong, or the log begins in motion"},
+    {"bias_beyond_model",
+     "at rest the gyros read {0.3g} deg/h beside the Earth's rotation, more than the biases of "
+     "{name} explain: a bias of that size is assumed; state it in the model"},
+    {"start_turning",
+     "the log begins turning at {0.3g} deg/s, which is no rest, and no velocity was given: "
+     "navigation begins with velocity 0; add --velocity \"NORTH EAST DOWN m/s\""},
+    {"start_changing",
+     "the force changes by {0.3g} m/s^2 in the first seconds, which is no rest, and no velocity "
+     "was "
+     "given: navigation begins with velocity 0; add --velocity \"NORTH EAST DOWN m/s\""},
+    {"start_shaking",
+     "the log begins shaking by {0.3g} m/s^2 rms, which is no rest, and no velocity was given: "
+     "navigation begins with velocity 0; add --velocity \"NORTH EAST DOWN m/s\""},
+    {"attitude_tilt",
+     "the force at the start is {0.3g} deg off the vertical of --attitude, which is known to "
+     "{1.2g} deg (1 sigma): the attitude or --axes is wrong, or the unit accelerates"},
+    {"hemisphere",
+     "the gyros read {0.3g} deg/h about the vertical downwards, where the Earth's rotation is "
+     "{1.3g} deg/h: the sign of the latitude of --position is wrong, or of the gyros"},
+    {"heading_off",
+     "the Earth's rotation as the gyros read it says that the yaw of --attitude is {0.3g} deg too "
+     "large ({1.2g} deg, 1 sigma)"},
+    {"rotation_off",
+     "the gyros read {0.3g}, {1.3g}, {2.3g} deg/h about north, east, down in --attitude, where "
+     "the Earth's rotation is {3.3g}, {4.3g}, {5.3g} deg/h: the attitude, --position, --velocity "
+     "or "
+     "--axes is wrong, or a bias is larger than the model's"},
     {"pole", "within 1 deg of a pole there is no north to align to: give --attitude"},
     {"align_short", "--align {0.6g}s is too short to find an attitude; align for minutes"},
     {"rest_short", "--align {0.6g}s is too short to learn the readings at rest; {1g} s are needed"},
@@ -377,6 +407,48 @@ static const struct message {
                        "{1.1f}): the errors in the model are too small"},
     {"left_the_earth", "at {0.3f} s the estimate is no longer near the Earth: an earlier reading "
                        "is absurd, or its unit is wrong"},
+    /* aid_columns.c, aid_readings.c, navigate_aids.c */
+    {"aid_unit",
+     "column {name} has no unit: write it into the header, such as {name} [{other}], or "
+     "into --aid-map"},
+    {"aid_dimension", "the unit of column {name} does not fit; expected one such as {other}"},
+    {"aid_partial", "there is a column of {name}, but none of {other}, which goes with it"},
+    {"aid_twice", "two columns are {name}; leave one of them out with --aid-map"},
+    {"aid_no_time", "there is no time column; readings need times on the clock of the log"},
+    {"aid_no_column", "there is no column of the {name}, which --aid-sigma names"},
+    {"aid_no_sigma",
+     "the sigma of the {name} is not known: add columns of it, or state it, such as "
+     "--aid-sigma \"position 1 m, velocity 0.05 m/s\""},
+    {"aid_nothing",
+     "no column has a known name of a position (latitude, longitude, height; ecef_x …; north, "
+     "east, down), velocity (velocity_north …), heading, baro_height or speed; name them with "
+     "--aid-map, such as \"time=t [s],latitude=Lat [deg],longitude=Lon [deg]\""},
+    {"aid_empty", "no row has a reading that can be used"},
+    {"aid_other_clock",
+     "the readings are from {0.10g} to {1.10g} s, but the log from {2.10g} to {3.10g} s: both must "
+     "be on one clock; --aid-delay TIME subtracts TIME from the times of the readings"},
+    {"aid_unreadable", "{0t}"},
+    {"aid_not_used", "{name} in {other} is not used, as its sigma is not known; add it to "
+                     "--aid-sigma, if it shall be used"},
+    {"aid_damaged", "{0} row{0s} of {name} cannot be read and are left out"},
+    {"aid_disordered", "{name} in {other}: {0} of {1} readings are not later than the one before: "
+                       "left out"},
+    {"aid_skipped", "{name} in {other}: {0} of {1} readings cannot be used: left out"},
+    {"aid_start_off", "the first position in {other} is {0.4g} m from --position; the position at "
+                      "the start is taken to be so uncertain"},
+    {"aid_refused", "{name} in {other}: {0} of {1} readings were refused because they do not fit "
+                    "the prediction, first at {2.1f} s: they are wrong then, or the sigmas or the "
+                    "errors in the model are too small"},
+    {"aid_recovered", "{name} in {other}: after many refusals in a row the estimate was taken to "
+                      "be wrong, and was moved to the readings, {0} time{0s}, first at {1.1f} s"},
+    {"aid_lost", "{name} in {other}: the last {0} readings were all refused: the estimate is lost, "
+                 "or the readings are wrong"},
+    {"aid_too_good", "{name} in {other}: the innovations are {0.1f} times as large as predicted "
+                     "(squared: {1.1f}): its sigma, or the errors in the model, are too small"},
+    {"aid_correlated", "{name} in {other}: an innovation has {0.0f} % of the one before in it: its "
+                       "errors are not independent from reading to reading, so that the estimate "
+                       "is worse than predicted; state how, such as --aid-sigma \"position 1 m "
+                       "correlated 2 m over 60 s\", or use fewer readings (--aid-interval)"},
     /* calibrate: session_record.c */
     {"calibrate:time_order",
      "{record}: {0} rows whose time does not increase, or is not a number, are left out"},

@@ -47,4 +47,18 @@ void check_message(const char *line, int code, const char *message);
 /* 1000 rows at 100 Hz of one gyro. */
 void write_good(void);
 
+/* Members of a sensor in a model file that state its other terms to be 0; in front of `}`. */
+#define NO_OTHER_TERM(white, rate, walk)                                                           \
+    "scale_factor: {repeatability: 0 ppm}, misalignment: 0 mrad, noise: {" white ", "              \
+    "bias_instability: 0 " rate ", " walk "}"
+#define NO_OTHER_GYRO_TERM_THAN(white)                                                             \
+    NO_OTHER_TERM("angle_random_walk: " white, "deg/h", "rate_random_walk: 0 deg/h/sqrt(h)")       \
+    ", g_sensitivity: [0 0 0 deg/h/g, 0 0 0 deg/h/g, 0 0 0 deg/h/g]"                               \
+    ", g2_sensitivity: [0 0 0 0 0 0 deg/h/g^2, 0 0 0 0 0 0 deg/h/g^2, 0 0 0 0 0 0 deg/h/g^2]"
+#define NO_OTHER_ACCEL_TERM_THAN(white)                                                            \
+    NO_OTHER_TERM("velocity_random_walk: " white, "ug", "acceleration_random_walk: 0 ug/sqrt(h)")  \
+    ", nonlinearity: {k2: 0 ppm/g}"
+#define NO_OTHER_GYRO_TERM NO_OTHER_GYRO_TERM_THAN("0 deg/sqrt(h)")
+#define NO_OTHER_ACCEL_TERM NO_OTHER_ACCEL_TERM_THAN("0 m/s/sqrt(h)")
+
 #endif

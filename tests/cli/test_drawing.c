@@ -137,7 +137,7 @@ static void test_without_temporary_folder(void **state)
         skip();
     for (size_t i = 0; i < DRAWINGS; i++)
         for (size_t k = 0; k < 2; k++) {
-            if (!strchr(drawings[i].options, 'p') || check_skips(i + k, 3))
+            if (!strchr(drawings[i].options, 'p') || check_skips(i + k, 5))
                 continue;
             snprintf(line, sizeof line, "TMPDIR=/nonexistent %s %s", drawings[i].line, options[k]);
             check_says(line, 1,

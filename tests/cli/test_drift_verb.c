@@ -9,8 +9,8 @@ static const double mile = 1852;
 
 /* Biases at the limits of the table of classes, and nothing else. */
 static const char limits[] = "imukit: 1\nname: limits\n"
-                             "gyro: {bias: {repeatability: 0.01 deg/h}}\n"
-                             "accel: {bias: {repeatability: 50 ug}}\n";
+                             "gyro: {bias: {repeatability: 0.01 deg/h}, " NO_OTHER_GYRO_TERM "}\n"
+                             "accel: {bias: {repeatability: 50 ug}, " NO_OTHER_ACCEL_TERM "}\n";
 
 static json_t *document;
 
@@ -56,6 +56,8 @@ static void test_table_of_classes(void **state)
     json_t *one = case_of(result_of("$I drift limits.yaml --times 1min,1h,24h --json"), 0);
     assert_string_equal(err, "");
     for (size_t row = 0; row < 3; row++) {
+        if (check_skips(row, 3))
+            continue;
         CHECK_RELATIVE(figure(one, row, "cep"), cep[row], 0.03);
         CHECK_RELATIVE(figure(one, row, "drms"), drms[row], 0.03);
     }
@@ -71,7 +73,7 @@ static void test_presets(void **state)
     static const struct {
         const char *name;
         double minute, hour;
-    } known[] = {{"strategic", 0.073, 0.061}, {"navigation", 0.88, 0.75}, {"tactical", 17, 83}};
+    } known[] = {{"strategic", 0.071, 0.056}, {"navigation", 0.86, 0.71}, {"tactical", 17, 80}};
     json_t *result = result_of("$I drift strategic navigation tactical --times 1min,1h --json");
     for (size_t m = 0; m < 3; m++) {
         json_t *one = case_of(result, m);
@@ -80,6 +82,39 @@ static void test_presets(void **state)
         CHECK_RELATIVE(figure(one, 1, "cep"), known[m].hour * mile, 0.04);
     }
     json_decref(document);
+}
+
+/* Bias instability alone costs the same at every rate, and less with a shorter correlation time:
+ * 24.43 km after 1 h is that of 0.1 deg/h and 30 ug by the stages of tests/model/horizontal_error.h
+ * on the ellipsoid, as of 2 % for the difference to its sphere. With the times of the stages tied
+ * to the sample interval it would be 21 and 25 % more at 1 Hz than at 100 Hz. */
+static void test_bias_instability_at_any_rate(void **state)
+{
+    (void)state;
+#define UNIT(time)                                                                                 \
+    "imukit: 1\ngyro: {noise: {bias_instability: 0.1 deg/h" time "}}\n"                            \
+    "accel: {noise: {bias_instability: 30 ug" time "}}\n"
+    put("b.yaml", UNIT(""));
+    put("short.yaml", UNIT(", bias_instability_correlation_time: 2000 s"));
+    static const char *const rates[] = {"100Hz", "1Hz", "8000Hz"};
+    double first[3] = {0, 0, 0};
+    for (int i = 0; i < 3; i++) {
+        char line[100];
+        snprintf(line, sizeof line, "$I drift b.yaml --times 1min,1h,24h --rate %s --json",
+                 rates[i]);
+        json_t *one = case_of(result_of(line), 0);
+        for (size_t row = 0; row < 3; row++) {
+            const double cep = figure(one, row, "cep");
+            first[row] = i == 0 ? cep : first[row];
+            CHECK_RELATIVE(cep, first[row], 1e-3);
+        }
+        json_decref(document);
+    }
+    CHECK_RELATIVE(first[1], 24430, 0.02);
+    json_t *one = case_of(result_of("$I drift short.yaml --times 1h --json"), 0);
+    CHECK_BELOW(figure(one, 0, "cep"), 0.8 * first[1]);
+    json_decref(document);
+    sweep();
 }
 
 /* Shares add up to the whole, the largest first; without known values the mean is 0. */
@@ -176,18 +211,23 @@ static void test_devices(void **state)
     json_t *want =
         json_object_get(result_of("$I drift tactical --want 'CEP 1 nmi @ 1h' --json"), "want");
     json_t *devices = json_object_get(want, "devices"), *device;
-    size_t index, met = 0;
+    size_t index, met = 0, bounds = 0;
     double navigation = 0;
     json_array_foreach(devices, index, device)
     {
         const double cep = value_of(json_object_get(device, "figure"));
         const bool meets = json_is_true(json_object_get(device, "meets"));
-        assert_true(meets == (cep <= mile));
+        /* A lower bound meets nothing. */
+        const bool least = json_is_true(json_object_get(device, "lower_bound"));
+        assert_true(meets == (cep <= mile && !least));
+        assert_true(least == (json_array_size(json_object_get(device, "unstated")) > 0));
         met += meets;
+        bounds += cep <= mile && least;
         if (strcmp(json_string_value(json_object_get(device, "name")), "navigation") == 0)
             navigation = cep;
     }
     assert_true(met >= 2 && met < json_array_size(devices) / 2);
+    assert_true(bounds >= 1);
     json_decref(document);
     json_t *one = case_of(result_of("$I drift navigation --times 1h --json"), 0);
     CHECK_RELATIVE(figure(one, 0, "cep"), navigation, 1e-9);
@@ -361,6 +401,8 @@ static void test_messages(void **state)
         {"$I drift tactical --yaw 1e20deg", "--yaw 1e20deg: expected -36000deg to 36000deg"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        if (check_skips(i, 3))
+            continue;
         char message[600];
         snprintf(message, sizeof message, "imukit drift: error: %s\n" TRY("drift"),
                  wrong[i].message);
@@ -377,9 +419,149 @@ static void test_omitted(void **state)
 {
     (void)state;
     put("band.yaml", "imukit: 1\nname: band\ngyro: {dead_band: 0.1 deg/h}\naccel: {}\n");
-    check_message("$I drift band.yaml -d 1min", 0,
+    check_message("$I drift band.yaml --only dead_band -d 1min", 0,
                   "imukit drift: warning: band.yaml: the linear theory leaves out gyro.dead_band; "
                   "--monte-carlo includes everything that needs no temperature\n");
+    sweep();
+}
+
+/* ---- what is not stated ---------------------------------------------------------------------- */
+
+static json_t *term_of(json_t *list, const char *sensor, const char *key)
+{
+    json_t *term;
+    size_t i;
+    json_array_foreach(list, i, term)
+    {
+        if (strcmp(json_string_value(json_object_get(term, "sensor")), sensor) == 0 &&
+            strcmp(json_string_value(json_object_get(term, "key")), key) == 0)
+            return term;
+    }
+    return NULL;
+}
+
+/* Share of one of two constants of the same column is that of their squares: 0.8 deg/h, which the
+ * tactical preset has, beside 0.3 deg/h that is stated (models of the same class, no other term).
+ */
+static void test_unstated(void **state)
+{
+    (void)state;
+    put("a.yaml", "imukit: 1\ngyro: {bias: {fixed: 0 0 0 ± 0.3 deg/h}, " NO_OTHER_GYRO_TERM "}\n"
+                  "accel: {bias: {repeatability: 0.8 mg}, " NO_OTHER_ACCEL_TERM "}\n");
+    json_t *one = case_of(result_of("$I drift a.yaml -d 1h --json"), 0);
+    json_t *list = json_object_get(one, "unstated");
+    assert_true(json_is_true(json_object_get(one, "lower_bound")));
+    assert_int_equal(json_array_size(list), 1);
+    json_t *bias = term_of(list, "gyro", "bias.repeatability");
+    assert_non_null(bias);
+    assert_string_equal(json_string_value(json_object_get(bias, "class")), "tactical");
+    CHECK_RELATIVE(value_of(json_object_get(bias, "typical")), 0.8, 1e-12);
+    check_contains(err,
+                   "a.yaml: the figures are lower bounds, because the model does not state gyro "
+                   "run-to-run bias;",
+                   err);
+    json_decref(document);
+    assert_int_equal(run("$I drift a.yaml -d 1h --want 'CEP 1e6 m @ 1h' 2>/dev/null"), 0);
+    check_contains(out, "Met at best: the figure is ", out);
+    /* The tactical preset's bias of 0.8 deg/h stated: nothing is missing, and the figures are those
+     * of the assumption. */
+    json_t *assumed = case_of(result_of("$I drift a.yaml -d 1h --assume-class tactical --json"), 0);
+    assert_string_equal(err, "");
+    assert_true(json_is_false(json_object_get(assumed, "lower_bound")));
+    assert_int_equal(json_array_size(json_object_get(assumed, "assumed")), 1);
+    const double cep = figure(assumed, 4, "cep");
+    json_decref(document);
+    put("b.yaml", "imukit: 1\ngyro: {bias: {repeatability: 0.8 deg/h}, " NO_OTHER_GYRO_TERM "}\n"
+                  "accel: {bias: {repeatability: 0.8 mg}, " NO_OTHER_ACCEL_TERM "}\n");
+    json_t *stated = case_of(result_of("$I drift b.yaml -d 1h --json"), 0);
+    CHECK_RELATIVE(figure(stated, 4, "cep"), cep, 1e-9);
+    json_decref(document);
+    sweep();
+}
+
+/* A scale factor is missed where the motion turns, and not at rest: 150 ppm of 90 deg are 49
+ * arcsec, beside 0.8 deg/h times 20 s, 16 arcsec; at rest 150 ppm of the Earth's rate are 0.002
+ * deg/h. */
+static void test_unstated_on_a_motion(void **state)
+{
+    (void)state;
+    put("turn.yaml", "imukit_motion: 1\nname: a turn\n"
+                     "start: {latitude: 48 deg, longitude: 11 deg, height: 500 m, heading: 0 deg}\n"
+                     "steps:\n  - hold 5 s\n  - accelerate to 5 m/s at 1 m/s^2\n"
+                     "  - turn left 90 deg at 15 deg/s\n  - hold 4 s\n");
+    put("a.yaml", "imukit: 1\ngyro: {bias: {repeatability: 0.8 deg/h}, misalignment: 0 mrad}\n"
+                  "accel: {bias: {repeatability: 0.8 mg}, misalignment: 0 mrad}\n");
+    json_t *one = case_of(result_of("$I drift a.yaml -m turn.yaml -r 20Hz --json"), 0);
+    assert_non_null(
+        term_of(json_object_get(one, "unstated"), "gyro", "scale_factor.repeatability"));
+    json_decref(document);
+    one = case_of(result_of("$I drift a.yaml -d 20s -r 20Hz --json"), 0);
+    assert_null(term_of(json_object_get(one, "unstated"), "gyro", "scale_factor.repeatability"));
+    json_decref(document);
+    sweep();
+}
+
+/* One log at rest shows nothing of what differs between logs. */
+static void test_unstated_of_a_static_log(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I simulate tactical -r 10Hz -d 10min -o a.csv && "
+                         "$I identify a.csv -o a.yaml >/dev/null"),
+                     0);
+    json_t *one = case_of(result_of("$I drift a.yaml -d 1h --json"), 0);
+    assert_non_null(term_of(json_object_get(one, "unstated"), "gyro", "bias.repeatability"));
+    assert_non_null(term_of(json_object_get(one, "unstated"), "accel", "bias.repeatability"));
+    json_decref(document);
+    assert_int_equal(run("$I grade a.yaml"), 0);
+    check_contains(out, "a: at best ", out);
+    sweep();
+}
+
+/* ---- aids ------------------------------------------------------------------------------------ */
+
+/* Times count from the end of the aids; data names the aids; what is asked without aids, or without
+ * their end, is refused with what to add. */
+static void test_aids(void **state)
+{
+    (void)state;
+    json_t *result = result_of(
+        "$I drift tactical --rate 20Hz --aid \"gnss position 1 m, velocity 0.05 m/s at 1 Hz until "
+        "40 s\" --aid \"odometer 0.1 m/s\" --outage 10s,30s --initial-attitude \"0.1 deg\" "
+        "--monte-carlo 16 --json");
+    json_t *inputs = json_object_get(document, "inputs");
+    assert_int_equal(json_array_size(json_object_get(inputs, "aids")), 3);
+    CHECK_CLOSE(value_of(json_object_get(inputs, "outage")), 40.0, 0.0);
+    json_t *times = json_object_get(case_of(result, 0), "times");
+    assert_int_equal(json_array_size(times), 3);
+    const double row[3] = {40.0, 50.0, 70.0};
+    for (size_t k = 0; k < 3; k++)
+        CHECK_CLOSE(value_of(json_object_get(json_array_get(times, k), "time")), row[k], 1e-12);
+    assert_true(figure(case_of(result, 0), 2, "cep") > 2 * figure(case_of(result, 0), 0, "cep"));
+    assert_non_null(json_object_get(json_array_get(times, 2), "believed"));
+    json_t *runs = json_object_get(json_object_get(result, "monte_carlo"), "times");
+    json_t *nees = json_object_get(json_array_get(runs, 0), "nees");
+    assert_int_equal(json_integer_value(json_object_get(nees, "degrees")), 9);
+    assert_true(json_number_value(json_object_get(nees, "mean")) > 3.0 &&
+                json_number_value(json_object_get(nees, "mean")) < 20.0);
+    json_decref(document);
+    static const struct {
+        const char *line, *message;
+    } wrong[] = {
+        {"$I drift tactical --outage 60s", "add --aid"},
+        {"$I drift tactical --aid \"position 1 m\" --outage 60s", "no --aid ends"},
+        {"$I drift tactical --aid \"position 1 m\" --want \"CEP 5 m after 60 s\"", "no --aid ends"},
+        {"$I drift tactical --aid \"positon 1 m\"", "did you mean position?"},
+        {"$I drift tactical --aid \"position 1 m at 1 Hz until 60 s\" --outage 60s --times 1s",
+         "leave --times out"},
+        {"$I drift tactical --aid \"position 1 m at 200 Hz\" --duration 10s", "once a sample"},
+        {"$I drift tactical --gains retuned", "--want"},
+        {"$I drift tactical --filter-model navigation", "add --aid"},
+    };
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+        assert_true(run(wrong[k].line) != 0);
+        if (!strstr(err, wrong[k].message))
+            fail_msg("%s: %s", wrong[k].line, err);
+    }
     sweep();
 }
 
@@ -388,6 +570,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table_of_classes),
         cmocka_unit_test(test_presets),
+        cmocka_unit_test(test_bias_instability_at_any_rate),
         cmocka_unit_test(test_budget),
         cmocka_unit_test(test_compensated),
         cmocka_unit_test(test_no_position),
@@ -398,8 +581,12 @@ int main(void)
         cmocka_unit_test(test_monte_carlo),
         cmocka_unit_test(test_files),
         cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_aids),
         cmocka_unit_test(test_messages),
         cmocka_unit_test(test_omitted),
+        cmocka_unit_test(test_unstated),
+        cmocka_unit_test(test_unstated_on_a_motion),
+        cmocka_unit_test(test_unstated_of_a_static_log),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -55,6 +55,11 @@ static json_t *result_of(json_t *root, const char *name)
     return json_object_get(json_object_get(root, "result"), name);
 }
 
+static double value_of(json_t *object, const char *key)
+{
+    return json_number_value(json_object_get(json_object_get(object, key), "value"));
+}
+
 static json_t *term_of(json_t *channel)
 {
     return json_object_get(json_object_get(channel, "terms"), "angle_random_walk");
@@ -299,13 +304,56 @@ static void test_allan(void **state)
                   "--curve\n" TRY("identify"));
 }
 
+/* Runs of a model with bias instability alone differ by its slow part, 1.8 B for ten minutes, which
+ * is no repeatability: simulated with it, their means would scatter more than these. One with 4 B
+ * is found, and what `calibrate` puts into a model is the same. */
+static void test_slow_flicker_is_no_repeatability(void **state)
+{
+    (void)state;
+    put("b.yaml", "imukit: 1\ngyro: {noise: {angle_random_walk: 0.03 deg/sqrt(h), "
+                  "bias_instability: 8 deg/h}}\n");
+    put("r.yaml", "imukit: 1\ngyro: {bias: {repeatability: 40 deg/h}, noise: {angle_random_walk: "
+                  "0.03 deg/sqrt(h), bias_instability: 8 deg/h}}\n");
+    assert_int_equal(
+        run("for m in b r; do for k in 1 2 3 4 5 6; do $I simulate $m.yaml --rate 5Hz "
+            "--duration 10min --seed 7 --run $k -o $m$k.npy >&2 || exit 1; done; done"),
+        0);
+    json_t *root = identify("b1.npy b2.npy b3.npy b4.npy b5.npy b6.npy --runs", 0), *channel;
+    size_t index;
+    json_array_foreach(result_of(root, "channels"), index, channel)
+    {
+        json_t *found = json_object_get(channel, "run_to_run");
+        CHECK_CLOSE(json_number_value(json_object_get(json_object_get(found, "lower"), "value")), 0,
+                    0);
+        CHECK_RELATIVE(value_of(found, "within"), 1.8 * 8 * DEGREE / 3600, 0.25);
+    }
+    assert_int_equal(index, 3);
+    json_decref(root);
+    assert_int_equal(run("$I calibrate b?.npy --procedure repeatability --model b.yaml"), 0);
+    check_contains(out, "deg/h  not seen  not seen  not seen", "calibrate");
+    root = identify("r1.npy r2.npy r3.npy r4.npy r5.npy r6.npy --runs", 0);
+    json_array_foreach(result_of(root, "channels"), index, channel)
+    {
+        json_t *found = json_object_get(channel, "run_to_run");
+        CHECK_BELOW(value_of(found, "lower"), 40 * DEGREE / 3600);
+        CHECK_BELOW(40 * DEGREE / 3600, value_of(found, "upper"));
+        CHECK_BELOW(0, value_of(found, "lower"));
+    }
+    json_decref(root);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_which),   cmocka_unit_test(test_rates),
-        cmocka_unit_test(test_runs),    cmocka_unit_test(test_run_that_differs),
-        cmocka_unit_test(test_devices), cmocka_unit_test(test_report),
-        cmocka_unit_test(test_plan),    cmocka_unit_test(test_allan),
+        cmocka_unit_test(test_which),
+        cmocka_unit_test(test_rates),
+        cmocka_unit_test(test_runs),
+        cmocka_unit_test(test_run_that_differs),
+        cmocka_unit_test(test_devices),
+        cmocka_unit_test(test_report),
+        cmocka_unit_test(test_plan),
+        cmocka_unit_test(test_allan),
+        cmocka_unit_test(test_slow_flicker_is_no_repeatability),
     };
     return cmocka_run_group_tests(tests, make_logs, drop_logs);
 }

@@ -233,6 +233,8 @@ static void test_axis_of_another_unit(void **state)
 static void test_numbers_of_no_gyro(void **state)
 {
     (void)state;
+    if (check_quick()) /* words alone differ */
+        return;
     make_log("for (c = 2; c < 5; c++) $c *= 57.3");
     identify_log("");
     check_first("Usable with care: the numbers of the gyros are no gyro's at rest: a wrong unit");
@@ -307,6 +309,8 @@ static void test_no_model(void **state)
     };
     make_long_log();
     for (size_t k = 0; k < sizeof logs / sizeof logs[0]; k++) {
+        if (check_skips(k, 2))
+            continue;
         char line[400];
         snprintf(line, sizeof line, CHANGE " long.csv > log.csv && $I identify log.csv",
                  logs[k].change);
@@ -355,6 +359,8 @@ static void test_lines_everywhere(void **state)
 static void test_one_or_several(void **state)
 {
     (void)state;
+    if (check_quick()) /* test_interpolated goes the same way */
+        return;
     make_log("if (NR % 3) $4 *= 0.75");
     identify_log("");
     check_contains(out, "gyro_z looks interpolated from a slower sensor", out);
@@ -372,6 +378,8 @@ static void test_one_or_several(void **state)
 static void test_unit_of_the_header(void **state)
 {
     (void)state;
+    if (check_quick()) /* words alone differ */
+        return;
     make_log("");
     identify_log("--gyro-unit deg/s --time-unit s");
     assert_null(strstr(err, "--gyro-unit"));
@@ -409,6 +417,8 @@ static void test_shared_stamps(void **state)
 static void test_codes_in_all_columns(void **state)
 {
     (void)state;
+    if (check_quick()) /* test_zeros goes the same way */
+        return;
     make_log("if (NR % 500 == 0) for (i = 2; i < 8; i++) $i = -9999");
     identify_log("--verbose");
     check_contains(out, "as a logger writes it for a row that was lost; left out", "codes");

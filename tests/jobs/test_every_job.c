@@ -144,7 +144,7 @@ static imk_status drift(const imk_job *job)
     imk_model_default(&biased);
     biased.accel.bias.repeatability.value[0] = 1e-3;
     imk_status status =
-        imk_drift_times_choose(0, 1, &minute, 0, 100, false, &job->allocator, &times, NULL);
+        imk_drift_times_choose(0, 1, &minute, 0, 100, false, 0.0, &job->allocator, &times, NULL);
     if (status == IMK_OK)
         status = imk_drift_models_run(1, models, called, &times, &settings, job, &found, NULL);
     if (status == IMK_OK) {

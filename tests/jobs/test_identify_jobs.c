@@ -191,7 +191,8 @@ static size_t read_curve(uint64_t seed, double error, double *tau, double *devia
     assert_true(count <= CURVE_POINTS);
     memset(samples, 0, sizeof samples);
     CHECK_OK(imk_white_start(&white, curve_truth[0], 1, random, 1));
-    CHECK_OK(imk_flicker_start(&flicker, curve_truth[1], 1, random, (uint64_t)2 << 32));
+    CHECK_OK(imk_flicker_start(&flicker, (imk_flicker){curve_truth[1], 0}, 1, random,
+                               (uint64_t)2 << 32));
     CHECK_OK(imk_random_walk_start(&walk, curve_truth[2], 1, random, (uint64_t)3 << 32));
     imk_white_add(&white, CURVE_SAMPLES, samples);
     imk_flicker_add(&flicker, CURVE_SAMPLES, samples);

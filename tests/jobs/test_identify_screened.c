@@ -27,7 +27,7 @@ static int make_record(void **state)
         samples[k] = calloc(ROWS, sizeof(double));
     CHECK_OK(imk_white_start(&white, 1e-3, 1 / rate, random, 1));
     imk_white_add(&white, ROWS, samples[SOUND]);
-    CHECK_OK(imk_flicker_start(&flicker, 2e-4, 1 / rate, random, 2));
+    CHECK_OK(imk_flicker_start(&flicker, (imk_flicker){2e-4, 0}, 1 / rate, random, 2));
     imk_flicker_add(&flicker, ROWS, samples[SOUND]);
     memcpy(samples[FAULTY], samples[SOUND], ROWS * sizeof(double));
     for (size_t i = 77777; i < ROWS; i += 200000)

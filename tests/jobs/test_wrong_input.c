@@ -317,7 +317,8 @@ static void test_navigate_settings(void **state)
 
 static imk_status times_of(double duration, size_t count, double stated, imk_drift_times *times)
 {
-    return imk_drift_times_choose(duration, count, &stated, 0, RATE, false, NULL, times, &error);
+    return imk_drift_times_choose(duration, count, &stated, 0, RATE, false, 0.0, NULL, times,
+                                  &error);
 }
 
 static bool count_calls(void *context, const char *stage, const char *unit, uint64_t done,

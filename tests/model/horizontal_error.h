@@ -170,19 +170,21 @@ static covariance unit_gauss_markov(int input, double time_constant, double t)
     return sum;
 }
 
-/* Flicker noise of B = 1 as it is simulated at 100 Hz (noise.h): 16 stages of correlation times
- * dt 4^j and variances ln 4/pi, the first one's 1.208 times that. Those slower than the run make up
- * most of its effect: within a run they pass for a constant bias. */
+/* Flicker noise of B = 1 as noise.h defines it, whatever the rate: stages of variances ln 4/pi,
+ * whose correlation times fall by 4 from the longest; that one is such that the density at 0 Hz, 2
+ * (ln 4/pi) T (1 + 1/4 + 1/16 …), is 1e6 s. Those slower than the run make up most of its effect:
+ * within a run they pass for a constant bias. 16 of them reach down to a millisecond. */
 enum { STAGES = 16 };
 
 static double stage_time(int stage)
 {
-    return 0.01 * pow(4, stage);
+    return 1e6 / (8 * log(4) / (3 * pi)) * pow(4, -stage);
 }
 
 static double stage_variance(int stage)
 {
-    return log(4) / pi * (stage == 0 ? 1.208 : 1);
+    (void)stage;
+    return log(4) / pi;
 }
 
 static covariance unit_flicker(int input, double t)

@@ -128,6 +128,10 @@ static void wrong_terms_are_refused(void **state)
     REFUSED(model.gyro.bias.temperature.coefficient[0].value[0] = (double)NAN, IMK_ERROR_NOT_FINITE,
             "gyro.bias.temperature");
     REFUSED(model.gyro.bias.warm_up_time.value = 0, IMK_ERROR_RANGE, "gyro.bias.warm_up.time");
+    REFUSED(model.accel.noise.bias_instability_correlation_time.value = -1, IMK_ERROR_RANGE,
+            "accel.noise.bias_instability_correlation_time");
+    REFUSED(model.accel.noise.bias_instability_correlation_time.value = 2e9, IMK_ERROR_RANGE,
+            "accel.noise.bias_instability_correlation_time");
 }
 
 static void wrong_structure_is_refused(void **state)
@@ -232,6 +236,7 @@ static void comparison_sees_what_simulates(void **state)
     UNEQUAL(other.gyro.noise.gauss_markov[1].sigma.value[2] = 2);
     UNEQUAL(other.gyro.bias.temperature.maximum = 360);
     UNEQUAL(other.gyro.bias.warm_up_time.value = 301);
+    UNEQUAL(other.gyro.noise.bias_instability_correlation_time.value = 1e5);
     UNEQUAL(other.timing.skew.value = 1e-6);
     UNEQUAL(other.accel.present = false);
     UNEQUAL(other.gyro.axis_count = 2);

@@ -23,8 +23,12 @@ static void test_standstill(void **state)
     imk_trajectory_state(&trajectory, 12345.678, &at);
     const imk_matrix3 c_nb = imk_matrix3_from_euler(angles[0], angles[1], angles[2]);
     const imk_matrix3 c_bn = imk_matrix3_transpose(c_nb);
-    const double gravity = imk_normal_gravity(place.latitude, place.height);
-    const imk_vector3 force = imk_matrix3_apply(c_bn, (imk_vector3){{0.0, 0.0, -gravity}});
+    const imk_vector3 gravity = imk_gravity_ecef(imk_ecef_from_geodetic(place));
+    const imk_vector3 force = imk_vector3_scale(
+        imk_matrix3_apply(c_bn, imk_matrix3_apply(imk_matrix3_transpose(imk_ned_axes(
+                                                      place.latitude, place.longitude)),
+                                                  gravity)),
+        -1.0);
     const imk_vector3 rate = imk_matrix3_apply(c_bn, imk_earth_rate(place.latitude));
     CHECK_CLOSE(at.place.latitude, place.latitude, 1e-15);
     CHECK_CLOSE(at.place.longitude, place.longitude, 1e-15);
@@ -221,29 +225,88 @@ static void test_local_axes_agree(void **state)
     }
 }
 
-static void test_rest_outside_the_span(void **state)
+/* Before and after, the velocity is that of the end, the angular rate falls as the header says, and
+ * the force is what that motion feels, since all of it is one motion. */
+static void test_motion_outside_the_span(void **state)
 {
     (void)state;
     imk_trajectory_piece piece[2];
     random_pieces(2, 1.0, 3, piece);
     const imk_trajectory trajectory = on_earth(2, piece);
-    imk_motion_state before, begin, after, end;
-    imk_trajectory_state(&trajectory, -100.0, &before);
-    imk_trajectory_state(&trajectory, 3.0, &begin);
-    imk_trajectory_state(&trajectory, 5.0, &end);
+    const imk_vector3 earth = {{0.0, 0.0, IMK_EARTH_RATE}};
+    for (int after = 0; after < 2; after++)
+        for (int i = 0; i < 3; i++) {
+            const double end = after ? 5.0 : 3.0, reach = (double[]){2e-3, 0.3, 100.0}[i];
+            const double time = after ? end + reach : end - reach;
+            imk_motion_state at_end, at, a, b;
+            imk_trajectory_state(&trajectory, end, &at_end);
+            imk_trajectory_state(&trajectory, time, &at);
+            CHECK_BELOW(imk_vector3_norm(imk_vector3_subtract(at.velocity, at_end.velocity)),
+                        1e-13);
+            const imk_vector3 rate_at_end = imk_vector3_subtract(
+                imk_quaternion_rotate(at_end.attitude, at_end.angular_rate), earth);
+            const imk_vector3 rate =
+                imk_vector3_subtract(imk_quaternion_rotate(at.attitude, at.angular_rate), earth);
+            const double turned = imk_vector3_norm(rate_at_end) * reach;
+            CHECK_CLOSE(imk_vector3_norm(rate),
+                        imk_vector3_norm(rate_at_end) / (1.0 + 0.25 * turned * turned), 1e-14);
+            for (int j = 0; j < 3; j++)
+                CHECK_CLOSE(at.position.v[j],
+                            at_end.position.v[j] + (time - end) * at_end.velocity.v[j], 1e-8);
+            const imk_vector3 force =
+                imk_vector3_subtract(imk_vector3_scale(imk_vector3_cross(earth, at.velocity), 2.0),
+                                     imk_gravity_ecef(at.position));
+            CHECK_BELOW(imk_vector3_norm(imk_vector3_subtract(
+                            imk_quaternion_rotate(at.attitude, at.specific_force), force)),
+                        1e-12);
+            /* the rate is the derivative of the attitude */
+            const double h = 1e-3;
+            imk_trajectory_state(&trajectory, time - h, &a);
+            imk_trajectory_state(&trajectory, time + h, &b);
+            const imk_vector3 turn = imk_quaternion_to_rotation_vector(
+                imk_quaternion_multiply(b.attitude, imk_quaternion_conjugate(a.attitude)));
+            for (int j = 0; j < 3; j++)
+                CHECK_CLOSE(turn.v[j] / (2.0 * h), rate.v[j], 1e-6);
+        }
+}
+
+/* A body that has stopped stays, to the bit. */
+static void test_rest_outside_the_span(void **state)
+{
+    (void)state;
+    imk_trajectory_piece piece;
+    imk_motion_state at, after;
+    random_pieces(1, 1.0, 3, &piece);
+    for (int i = 0; i < 3; i++)
+        memset(&piece.position[i][1], 0, 6 * sizeof(double));
+    for (int i = 0; i < 4; i++)
+        memset(&piece.quaternion[i][1], 0, 5 * sizeof(double));
+    const imk_trajectory trajectory = on_earth(1, &piece);
+    imk_trajectory_state(&trajectory, 3.5, &at);
     imk_trajectory_state(&trajectory, 1e6, &after);
-    CHECK_CLOSE(imk_vector3_norm(before.velocity), 0.0, 0.0);
-    CHECK_CLOSE(imk_vector3_norm(after.velocity), 0.0, 0.0);
-    assert_true(imk_vector3_norm(end.velocity) > 1.0); /* still under way */
-    for (int i = 0; i < 3; i++) {
-        CHECK_CLOSE(before.position.v[i], begin.position.v[i], 0.0);
-        CHECK_CLOSE(after.position.v[i], end.position.v[i], 1e-9);
-    }
-    CHECK_CLOSE(before.attitude.x, begin.attitude.x, 0.0);
-    CHECK_CLOSE(after.attitude.x, end.attitude.x, 1e-15);
-    CHECK_CLOSE(imk_vector3_norm(after.angular_rate), IMK_EARTH_RATE, 1e-19);
-    CHECK_CLOSE(imk_vector3_norm(after.specific_force),
-                imk_normal_gravity(after.place.latitude, after.place.height), 1e-13);
+    after.time = at.time;
+    assert_memory_equal(&after, &at, sizeof at);
+}
+
+/* Times that rounding has put past the end have the accelerations of the last piece. */
+static void test_rounded_end(void **state)
+{
+    (void)state;
+    imk_trajectory_piece piece[2];
+    imk_motion_state end, past, gone;
+    random_pieces(2, 1.0, 3, piece);
+    for (int i = 0; i < 2; i++)
+        piece[i].start += 1.7e9; /* seconds since 1970 */
+    const imk_trajectory trajectory = on_earth(2, piece);
+    double first, last;
+    imk_trajectory_span(&trajectory, &first, &last);
+    imk_trajectory_state(&trajectory, last, &end);
+    imk_trajectory_state(&trajectory, nextafter(last, 1e10), &past); /* 0.24 us */
+    imk_trajectory_state(&trajectory, last + 1e-3, &gone);
+    CHECK_BELOW(imk_vector3_norm(imk_vector3_subtract(past.specific_force, end.specific_force)),
+                1e-4);
+    assert_true(imk_vector3_norm(imk_vector3_subtract(gone.specific_force, end.specific_force)) >
+                1.0);
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -342,7 +405,9 @@ int main(void)
         cmocka_unit_test(test_eotvos),
         cmocka_unit_test(test_kinematics),
         cmocka_unit_test(test_local_axes_agree),
+        cmocka_unit_test(test_motion_outside_the_span),
         cmocka_unit_test(test_rest_outside_the_span),
+        cmocka_unit_test(test_rounded_end),
         cmocka_unit_test(test_odd_trajectories_are_refused),
         cmocka_unit_test(test_odd_vibration_is_refused),
     };

@@ -79,8 +79,19 @@ GENERATOR(fast, gauss_markov,
           imk_gauss_markov_start(&state->gauss_markov, fast, dt, random, stream),
           imk_gauss_markov_sampled_allan_variance(fast, dt, n),
           imk_gauss_markov_sampled_spectrum(fast, dt, f))
-GENERATOR(flicker, flicker, imk_flicker_start(&state->flicker, 0.9, dt, random, stream),
-          imk_flicker_sampled_allan_variance(0.9, dt, n), imk_flicker_sampled_spectrum(0.9, dt, f))
+/* Its samples depend on time/dt only: as of 1e6 s at 50 Hz, 1 Hz and 8 kHz; with three stages, with
+ * two, and white. */
+#define FLICKER(name, time)                                                                        \
+    GENERATOR(name, flicker,                                                                       \
+              imk_flicker_start(&state->flicker, (imk_flicker){0.9, time}, dt, random, stream),    \
+              imk_flicker_sampled_allan_variance((imk_flicker){0.9, time}, dt, n),                 \
+              imk_flicker_sampled_spectrum((imk_flicker){0.9, time}, dt, f))
+FLICKER(flicker, 0)
+FLICKER(flicker_at_1Hz, 2e4)
+FLICKER(flicker_at_8kHz, 1.6e8)
+FLICKER(short_flicker, 0.3)
+FLICKER(brief_flicker, 0.1)
+FLICKER(white_flicker, 0.02)
 GENERATOR(first, arma, imk_filtered_white_start(&state->arma, 0.4, first_order, dt, random, stream),
           imk_filtered_white_sampled_allan_variance(0.4, first_order, dt, n),
           imk_filtered_white_sampled_spectrum(0.4, first_order, dt, f))
@@ -121,19 +132,16 @@ static double variance_of(const generator *g)
     return sum / (POINTS * dt);
 }
 
+#define FLOOR (0.81 * 0.44127120030530319) /* B^2 ln 4/pi */
 static const generator generators[] = {
-    ENTRY(white, 0.16 / 0.02),
-    ENTRY(walk, 0.0),
-    ENTRY(slow, 2.25),
-    ENTRY(medium, 2.25),
+    ENTRY(white, 0.16 / 0.02), ENTRY(walk, 0.0), ENTRY(slow, 2.25), ENTRY(medium, 2.25),
     ENTRY(fast, 2.25),
-    ENTRY(flicker, 0.81 * 0.44127120030530319 * 16.20785), /* ln 4/pi B^2 (15 + 1.20785) */
-    ENTRY(first, -1.0),
-    ENTRY(second, -1.0),
-    ENTRY(wide, -1.0),
-    ENTRY(ringing, 0.64),
-    ENTRY(folded, 0.64),
-    ENTRY(tone, 0.0),
+    /* stages of variance 1, and the fastest by the cubic of flicker.c; white: (8/3) x */
+    ENTRY(flicker, FLOOR * 13.888709), ENTRY(flicker_at_1Hz, FLOOR * 11.058789),
+    ENTRY(flicker_at_8kHz, FLOOR * 17.5614894), ENTRY(short_flicker, FLOOR * 3.04710577),
+    ENTRY(brief_flicker, FLOOR * 2.24066527), ENTRY(white_flicker, FLOOR * 2.26618007),
+    ENTRY(first, -1.0), ENTRY(second, -1.0), ENTRY(wide, -1.0), ENTRY(ringing, 0.64),
+    ENTRY(folded, 0.64), ENTRY(tone, 0.0),
     ENTRY(angle, 2.0 * 0.16 / (0.02 * 0.02 * 0.02)), /* two readings of A^2/dt, over dt^2 */
 };
 enum { GENERATORS = sizeof generators / sizeof *generators };

@@ -105,6 +105,19 @@ def place(p, z, latitude):
     return latitude, height
 
 
+def bend(s, height):
+    """What gravity aloft has toward the equator, over height and sin(2 latitude): as a field
+    without curl needs it, the derivative with s = sin^2(latitude) of the gravity between the
+    ellipsoid and the height, over the meridian's radius; second order in height."""
+    root = math.sqrt(1.0 - E2 * s)
+    surface = EQUATOR * (1.0 + POLE_EXCESS * s) / root
+    slope = EQUATOR * (POLE_EXCESS + E2 / 2 * (1.0 + POLE_EXCESS * s) / root**2) / root
+    meridian = A * (1.0 - E2) / root**3
+    linear = 1.0 + FLATTENING + RATIO - 2.0 * FLATTENING * s
+    return (slope * (1.0 - linear * height / A) + 2.0 * FLATTENING * surface * height / A) / (
+        meridian + height)
+
+
 def fly(position, velocity, gain, way, dt, latitude):
     """r and v after all samples, given the force's integrals in inertial axes."""
     (x, y, z), (u, v, w) = position, velocity
@@ -116,8 +129,10 @@ def fly(position, velocity, gain, way, dt, latitude):
         gravity = (EQUATOR * (1.0 + POLE_EXCESS * s) / math.sqrt(1.0 - E2 * s) *
                    (1.0 - 2.0 * (1.0 + FLATTENING + RATIO - 2.0 * FLATTENING * s) * relative +
                     3.0 * relative * relative))
-        across = -gravity * math.cos(latitude) / p - RATE * RATE
-        gx, gy, gz = across * mx, across * my, -gravity * math.sin(latitude)
+        north = -height * bend(s, height)
+        across = (-gravity - 2.0 * s * north) * math.cos(latitude) / p - RATE * RATE
+        gx, gy = across * mx, across * my
+        gz = (-gravity + 2.0 * (1.0 - s) * north) * math.sin(latitude)
         x, y, z = (x + u * dt + d + gx * dt * dt / 2, y + v * dt + e + gy * dt * dt / 2,
                    z + w * dt + f + gz * dt * dt / 2)
         u, v, w = u + a + gx * dt, v + b + gy * dt, w + c + gz * dt

@@ -48,7 +48,7 @@ static void set_flicker(imk_noise *noise)
 }
 static double flicker(double dt, size_t n)
 {
-    return imk_flicker_sampled_allan_variance(0.5, dt, n);
+    return imk_flicker_sampled_allan_variance((imk_flicker){0.5, 0}, dt, n);
 }
 
 static void set_gauss_markov(imk_noise *noise, double correlation_time)
@@ -285,7 +285,8 @@ static void test_flicker_is_flat(void **state)
     (void)state;
     const double flat = sqrt(2.0 * 0.69314718055994531 / 3.14159265358979324);
     for (double n = 2.0; n <= 20000.0; n *= 1.6) {
-        double variance = imk_flicker_sampled_allan_variance(1.0, 0.01, (size_t)n);
+        double variance =
+            imk_flicker_sampled_allan_variance((imk_flicker){1.0, 0}, 0.01, (size_t)n);
         CHECK_RELATIVE(sqrt(variance), flat, 0.02);
     }
 }

@@ -275,7 +275,7 @@ static double unit_spectrum(const imki_allan_problem *problem, size_t j, double 
                    ? imk_filtered_white_sampled_spectrum(1, noise->filter, dt, f)
                    : 1;
     case IMKI_LAG_LOGARITHM:
-        return imk_flicker_sampled_spectrum(1, dt, f);
+        return imk_flicker_sampled_spectrum((imk_flicker){1, 0}, dt, f);
     case IMKI_LAG_CUBIC:
         return imk_random_walk_sampled_spectrum(1, dt, f);
     case IMKI_LAG_DECAY:
@@ -367,7 +367,8 @@ double imk_allan_noise_variance(const imk_allan_noise *noise, double dt, size_t 
         sum += imk_filtered_white_sampled_allan_variance(noise->term[IMK_NOISE_WHITE],
                                                          noise->filter, dt, m);
     if (noise->term[IMK_NOISE_BIAS_INSTABILITY] != 0)
-        sum += imk_flicker_sampled_allan_variance(noise->term[IMK_NOISE_BIAS_INSTABILITY], dt, m);
+        sum += imk_flicker_sampled_allan_variance(
+            (imk_flicker){noise->term[IMK_NOISE_BIAS_INSTABILITY], 0}, dt, m);
     if (noise->term[IMK_NOISE_RANDOM_WALK] != 0)
         sum += imk_random_walk_sampled_allan_variance(noise->term[IMK_NOISE_RANDOM_WALK], dt, m);
     sum += imk_ramp_allan_variance(noise->term[IMK_NOISE_RAMP], tau);

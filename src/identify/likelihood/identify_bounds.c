@@ -143,8 +143,9 @@ static void term_shape(const plan *p, int term, double *shape)
         const double f = frequency_of(p, b), k = p->index[b];
         shape[b] = term == IMK_NOISE_QUANTIZATION  ? imk_quantization_sampled_spectrum(1, dt, f)
                    : term == IMK_NOISE_RANDOM_WALK ? imk_random_walk_sampled_spectrum(1, dt, f)
-                   : k < SINGLES ? imk_flicker_cosine_spectrum(1, dt, (size_t)p->n, (size_t)k)
-                                 : imk_flicker_sampled_spectrum(1, dt, f);
+                   : k < SINGLES ? imk_flicker_cosine_spectrum((imk_flicker){1, 0}, dt,
+                                                               (size_t)p->n, (size_t)k)
+                                 : imk_flicker_sampled_spectrum((imk_flicker){1, 0}, dt, f);
     }
 }
 

@@ -35,7 +35,7 @@ static void set_bands(spectrum *p, double dt, double duration)
         p->weight[b] = from * (ratio - 1);
         p->h[0][b] = imk_quantization_sampled_spectrum(1, dt, f);
         p->h[1][b] = 1;
-        p->h[2][b] = imk_flicker_sampled_spectrum(1, dt, f);
+        p->h[2][b] = imk_flicker_sampled_spectrum((imk_flicker){1, 0}, dt, f);
         p->h[3][b] = imk_random_walk_sampled_spectrum(1, dt, f);
         p->s[b] = f; /* until the spectrum is put there */
     }

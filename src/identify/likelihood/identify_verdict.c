@@ -14,7 +14,8 @@ double imk_identification_allan_variance(const imk_identification *result, doubl
             ? imk_filtered_white_sampled_allan_variance(t[IMK_NOISE_WHITE].value, result->filter,
                                                         dt, m)
             : imk_white_sampled_allan_variance(t[IMK_NOISE_WHITE].value, dt, m),
-        imk_flicker_sampled_allan_variance(t[IMK_NOISE_BIAS_INSTABILITY].value, dt, m),
+        imk_flicker_sampled_allan_variance((imk_flicker){t[IMK_NOISE_BIAS_INSTABILITY].value, 0},
+                                           dt, m),
         imk_random_walk_sampled_allan_variance(t[IMK_NOISE_RANDOM_WALK].value, dt, m),
         imk_ramp_allan_variance(t[IMK_NOISE_RAMP].value, (double)m * dt)};
     if (term >= 0 && term < IMK_NOISE_TERMS)

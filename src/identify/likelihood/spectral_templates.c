@@ -23,19 +23,19 @@ static double flicker_at(const imki_bands *bands, size_t b)
     const double dt = bands->dt, f = bands->frequency[b], index = index_of(bands, b);
     const size_t n = bands->length[b];
     if (b < bands->singles)
-        return imk_flicker_cosine_spectrum(1, dt, n, b + 1);
+        return imk_flicker_cosine_spectrum((imk_flicker){1, 0}, dt, n, b + 1);
     if (!(index < CORRECTED && index >= 1))
-        return imk_flicker_sampled_spectrum(1, dt, f);
+        return imk_flicker_sampled_spectrum((imk_flicker){1, 0}, dt, f);
     if (bands->degrees[b] < 1.5)
-        return imk_flicker_cosine_spectrum(1, dt, n, (size_t)(index + 0.5));
+        return imk_flicker_cosine_spectrum((imk_flicker){1, 0}, dt, n, (size_t)(index + 0.5));
     const size_t k = (size_t)index;
     const double step_hz = 0.5 / ((double)n * dt);
     double expected = 0, spectrum = 0;
     for (size_t i = k; i <= k + 1; i++) {
-        expected += imk_flicker_cosine_spectrum(1, dt, n, i);
-        spectrum += imk_flicker_sampled_spectrum(1, dt, (double)i * step_hz);
+        expected += imk_flicker_cosine_spectrum((imk_flicker){1, 0}, dt, n, i);
+        spectrum += imk_flicker_sampled_spectrum((imk_flicker){1, 0}, dt, (double)i * step_hz);
     }
-    return imk_flicker_sampled_spectrum(1, dt, f) * expected / spectrum;
+    return imk_flicker_sampled_spectrum((imk_flicker){1, 0}, dt, f) * expected / spectrum;
 }
 
 /* Quantization: where the two ends of each of many segments are not told apart, they add their

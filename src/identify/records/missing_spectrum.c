@@ -158,8 +158,9 @@ static bool fit_terms(imki_work *w, const imki_missing *m, const double *power,
         fit->shape[IMK_NOISE_QUANTIZATION][b] = imk_quantization_sampled_spectrum(1, dt, f);
         fit->shape[IMK_NOISE_WHITE][b] = imk_white_sampled_spectrum(1, dt, f);
         fit->shape[IMK_NOISE_BIAS_INSTABILITY][b] =
-            b + 1 < IMKI_SINGLE_BANDS ? imk_flicker_cosine_spectrum(1, dt, w->n, b + 1)
-                                      : imk_flicker_sampled_spectrum(1, dt, f);
+            b + 1 < IMKI_SINGLE_BANDS
+                ? imk_flicker_cosine_spectrum((imk_flicker){1, 0}, dt, w->n, b + 1)
+                : imk_flicker_sampled_spectrum((imk_flicker){1, 0}, dt, f);
         fit->shape[IMK_NOISE_RANDOM_WALK][b] = imk_random_walk_sampled_spectrum(1, dt, f);
     }
     const size_t middle = m->bands * 3 / 4, low = m->bands > 8 ? 4 : 0;

@@ -45,7 +45,7 @@ static double term_spectrum(int term, double dt, double f)
     case IMK_NOISE_WHITE:
         return 1;
     case IMK_NOISE_BIAS_INSTABILITY:
-        return imk_flicker_sampled_spectrum(1, dt, f);
+        return imk_flicker_sampled_spectrum((imk_flicker){1, 0}, dt, f);
     default:
         return imk_random_walk_sampled_spectrum(1, dt, f);
     }

@@ -28,6 +28,7 @@
     ROW(sbg, "sbg", "sbgECom", "", NULL, NULL, false, false)                                       \
     ROW(ubx, "ubx", "UBX", ".ubx", NULL, NULL, false, false)                                       \
     ROW(vectornav, "vectornav", "VectorNav", "", NULL, NULL, false, false)                         \
+    ROW(rtklib, "rtklib", "RTKLIB .pos", ".pos", NULL, NULL, false, false)                         \
     ROW(described, "binary", "records described by --binary", "", NULL, NULL, false, false)
 
 /* What a format sees of a log that is written. */

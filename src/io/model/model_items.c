@@ -160,7 +160,9 @@ bool imki_item_equal(const imki_item *item, const imk_model *a, const imk_model 
                *imki_field_sigmas(item->field, &a->timing) ==
                    *imki_field_sigmas(item->field, &b->timing);
     default:
-        return imki_field_equal(item->field, a_triad, b_triad, true);
+        return imki_field_equal(item->field, a_triad, b_triad, true) &&
+               imki_field_stated_zero(item->field, a_triad) ==
+                   imki_field_stated_zero(item->field, b_triad);
     }
 }
 
@@ -185,6 +187,6 @@ bool imki_item_absent(const imki_item *item, const imk_model *model)
         return *imki_field_values(item->field, &model->timing) == 0 &&
                *imki_field_sigmas(item->field, &model->timing) == 0;
     default:
-        return imki_field_absent(item->field, triad);
+        return imki_field_absent(item->field, triad) && !imki_field_stated_zero(item->field, triad);
     }
 }

@@ -90,6 +90,8 @@ static void read_group(imki_reader *r, int mapping, const char *prefix)
         const imki_field *field = exact_field(path, r->kind);
         if (field) {
             imki_read_field(r, field, value);
+            if (imki_field_absent(field, r->triad))
+                r->triad->stated_zero |= imki_field_bit(field);
         } else if (is_group(path, r->kind)) {
             snprintf(next_prefix, sizeof next_prefix, "%s.", path);
             read_group(r, value, next_prefix);

@@ -7,6 +7,7 @@
 #include "jobs/job_internal.h"
 
 #include "imukit/distributions.h"
+#include "imukit/noise.h"
 #include "imukit/simulate_log.h"
 
 #include <math.h>
@@ -19,6 +20,28 @@ static const double usual_trim = 0.2, usual_minimum = 1.0;
 static double or_usual(double asked, double usual)
 {
     return isnan(asked) ? usual : asked;
+}
+
+/* Flicker noise that the model states differs from run to run by itself. A run does not show the
+ * part that is slower than it: the variance of its mean less the Allan variance at its length. The
+ * repeatability of a model comes on top of it. */
+static void add_slow_flicker(const imk_calibrate_log *b, const imk_test_record *record,
+                             imk_static_interval *run)
+{
+    const size_t n = run->end - run->begin;
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const imk_triad *triad = imk_model_triad(&b->calibration->model, sensor);
+        for (int i = 0; triad->present && n > 0 && i < triad->axis_count; i++) {
+            const imk_flicker flicker = {triad->noise.bias_instability.value[i],
+                                         triad->noise.bias_instability_correlation_time.value};
+            const double slow = imk_flicker_mean_variance(flicker, record->dt, n) -
+                                imk_flicker_sampled_allan_variance(flicker, record->dt, n);
+            const double scale = record->counts[sensor] ? triad->sensitivity.value[i] : 1.0;
+            const double sigma = run->sigma[sensor][i];
+            if (flicker.instability > 0.0)
+                run->sigma[sensor][i] = sqrt(sigma * sigma + scale * scale * slow);
+        }
+    }
 }
 
 static imk_status take_runs(imk_calibrate_log *b, const imk_calibrate_record *log,
@@ -35,6 +58,8 @@ static imk_status take_runs(imk_calibrate_log *b, const imk_calibrate_record *lo
     if (count > room)
         return imki_fail(&b->findings, error, IMK_ERROR_RANGE, "many_runs", NULL,
                          IMKI_NUMBERS(IMK_RUNS_MAX));
+    for (size_t k = 0; k < count; k++)
+        add_slow_flicker(b, &log->record, &run[b->run_count + k]);
     b->run_count += count;
     return IMK_OK;
 }

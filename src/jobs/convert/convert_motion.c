@@ -148,6 +148,17 @@ static void average(const double *data, size_t rows, double *mean, double *devia
 /* Well beyond the noise of small sensors, well below what a hand does. */
 static const double still_rate = 0.02, still_force = 0.5; /* rms [rad/s], [m/s^2] */
 
+/* Roll and pitch are those of a plumb line, the yaw is that of north-east-down, of which the plumb
+ * line's differs by less than the square of what matters. */
+static imk_matrix3 hanging(imk_geodetic place, double roll, double pitch, double yaw)
+{
+    const imk_matrix3 plumb = imk_plumb_axes(place);
+    double other, first;
+    imk_matrix3 c_nb = imk_matrix3_multiply(plumb, imk_matrix3_from_euler(roll, pitch, yaw));
+    imk_matrix3_to_euler(c_nb, &other, &other, &first);
+    return imk_matrix3_multiply(plumb, imk_matrix3_from_euler(roll, pitch, yaw - (first - yaw)));
+}
+
 /* The attitude from the mean force of the first rows, when the unit is still. */
 static imk_status align(imki_convert_motion *m, size_t rows, imk_error *error)
 {
@@ -169,8 +180,8 @@ static imk_status align(imki_convert_motion *m, size_t rows, imk_error *error)
                   IMKI_NUMBERS(o->still, rate_moves / imk_unit_of("deg").scale, force_moves));
     double roll = imk_atan2(-force.v[1], -force.v[2]);
     double pitch = imk_atan2(force.v[0], sqrt(force.v[1] * force.v[1] + force.v[2] * force.v[2]));
-    imk_matrix3 c_nb = imk_matrix3_from_euler(roll, pitch, o->yaw);
     imk_geodetic place = {.latitude = o->latitude, .height = o->height};
+    imk_matrix3 c_nb = hanging(place, roll, pitch, o->yaw);
     m->start = imk_navigation_state_ned(0, place, (imk_vector3){{0, 0, 0}}, c_nb);
     m->strapdown = imk_strapdown_start(&m->start);
     m->gravity = imk_gravity_ecef(m->start.position);

@@ -11,16 +11,10 @@ typedef struct search {
     imk_drift_requirement figure;
     const imk_allocator *allocator;
     imk_drift_settings settings; /* of the one time */
+    bool assume;
+    imk_grade grade;
     imk_drift_candidate *candidate;
 } search;
-
-static bool states_bias(const imk_triad *triad)
-{
-    for (int i = 0; i < triad->axis_count; i++)
-        if (triad->bias.repeatability.value[i] > 0)
-            return true;
-    return false;
-}
 
 /* Each device by itself, on one thread. One that has no complete triads is left unusable. */
 static void try_device(void *context, size_t item)
@@ -34,7 +28,8 @@ static void try_device(void *context, size_t item)
     if (!model)
         return;
     imk_device_model(c->device, model);
-    c->no_bias = !states_bias(&model->gyro) || !states_bias(&model->accel);
+    if (s->assume && model->gyro.present && model->accel.present)
+        imk_model_assume_class(model, s->grade, NULL);
     if (imk_drift_validate(model, &s->settings, NULL) == IMK_OK) {
         const size_t size = imk_drift_covariance_size(model, &s->settings);
         void *memory = imki_arena_room(&scratch, size);
@@ -43,6 +38,9 @@ static void try_device(void *context, size_t item)
                                            NULL) == IMK_OK) {
             c->figures = imk_drift_figures_of(&analysis->total[0]);
             c->usable = isfinite(imk_drift_required(&c->figures, s->figure));
+            c->no_memory =
+                imki_drift_missing(model, &s->settings, 1U << s->figure, NULL, &scratch, c->missing,
+                                   &c->missing_count, NULL) == IMK_ERROR_MEMORY;
         }
     }
     imki_arena_free(&scratch);
@@ -107,12 +105,22 @@ imk_status imki_drift_answer(imk_drift_models *r, imki_arena *arena, const imk_e
                                                 &answer->allocation, error);
     if (status != IMK_OK)
         return status;
+    if (want->retuned && one->settings.aid_count > 0) {
+        const imk_status retuned = imki_drift_retune(r, arena, executor, error);
+        if (retuned != IMK_OK)
+            return retuned;
+    }
     order_terms(one->analysis, answer);
     answer->candidate = imki_arena_take(arena, count * sizeof *answer->candidate);
     answer->candidate_count = answer->candidate ? count : 0;
     for (size_t i = 0; i < answer->candidate_count; i++)
         answer->candidate[i].device = imk_device_get(i);
-    search s = {want->figure, &arena->allocator, one->settings, answer->candidate};
+    search s = {.figure = want->figure,
+                .allocator = &arena->allocator,
+                .settings = one->settings,
+                .candidate = answer->candidate,
+                .assume = r->settings.assume,
+                .grade = r->settings.assumed_class};
     s.settings.time = &r->times->time[one->time];
     s.settings.time_count = 1;
     imk_execute(executor, answer->candidate_count, try_device, &s);

@@ -47,7 +47,7 @@ static void states_of(imk_drift_requirement requirement, int *first, int *last)
     *last = of[requirement][1];
 }
 
-static double variance_of(const imk_drift_moments *m, imk_drift_requirement requirement)
+double imki_drift_variance(const imk_drift_moments *m, imk_drift_requirement requirement)
 {
     int first, last;
     double sum = 0;
@@ -57,7 +57,7 @@ static double variance_of(const imk_drift_moments *m, imk_drift_requirement requ
     return sum;
 }
 
-static double shift_of(const imk_drift_moments *m, imk_drift_requirement requirement)
+double imki_drift_shift(const imk_drift_moments *m, imk_drift_requirement requirement)
 {
     int first, last;
     double sum = 0;
@@ -85,11 +85,11 @@ static bool find_budget(const imk_drift_models *r, imk_drift_case *one, imki_are
     one->share = imki_arena_take(arena, (a->source_count + 1) * sizeof *one->share);
     if (!one->share)
         return false;
-    const double total = variance_of(&a->total[one->time], requirement);
+    const double total = imki_drift_variance(&a->total[one->time], requirement);
     for (size_t k = 0; k < a->source_count; k++) {
         imk_drift_moments m = a->contribution[k * a->time_count + one->time];
-        imk_drift_share s = {.source = k, .shift = shift_of(&m, requirement)};
-        s.share = total > 0 ? variance_of(&m, requirement) / total : 0;
+        imk_drift_share s = {.source = k, .shift = imki_drift_shift(&m, requirement)};
+        s.share = total > 0 ? imki_drift_variance(&m, requirement) / total : 0;
         if (!(s.share > 0) && !(s.shift > 0))
             continue;
         s.whole = imk_drift_figures_of(&m);
@@ -98,8 +98,39 @@ static bool find_budget(const imk_drift_models *r, imk_drift_case *one, imki_are
         s.random = imk_drift_figures_of(&m);
         one->share[one->share_count++] = s;
     }
+    for (size_t k = 0; k < a->cross_count && total > 0; k++)
+        one->correlation_share +=
+            imki_drift_variance(&a->cross[k].moments[one->time], requirement) / total;
     qsort(one->share, one->share_count, sizeof *one->share, by_share);
     return true;
+}
+
+/* ---- what is not stated ---- */
+
+/* A table shows all of these; a requirement is about one. */
+static unsigned figures_shown(const imk_drift_models *r)
+{
+    const bool is_free = r->settings.drift.vertical == IMK_VERTICAL_FREE;
+    return 1U << IMK_REQUIRED_DRMS | 1U << IMK_REQUIRED_VELOCITY | 1U << IMK_REQUIRED_TILT |
+           1U << IMK_REQUIRED_HEADING | (is_free ? 1U << IMK_REQUIRED_HEIGHT : 0U);
+}
+
+static imk_status find_missing(const imk_drift_models *r, imk_drift_case *one,
+                               const imk_executor *executor, imk_error *error)
+{
+    double time[IMK_DRIFT_ROWS_MAX];
+    imki_arena scratch = {.allocator = r->times->allocator};
+    imk_drift_settings settings = one->settings;
+    const bool asked = r->settings.want.asked;
+    settings.time_count = asked ? 1 : r->times->row_count;
+    for (size_t k = 0; k < settings.time_count; k++)
+        time[k] = asked ? r->times->time[one->time] : imki_drift_row_time(r, k);
+    settings.time = time;
+    const unsigned figures = asked ? 1U << imki_drift_looked_at(r) : figures_shown(r);
+    const imk_status status = imki_drift_missing(one->model, &settings, figures, executor, &scratch,
+                                                 one->missing, &one->missing_count, error);
+    imki_arena_free(&scratch);
+    return status;
 }
 
 /* ---- all ---- */
@@ -121,7 +152,7 @@ static imk_status analyse(const imk_drift_models *r, imk_drift_case *one, imki_a
         return status;
     for (size_t t = 0; t < one->analysis->time_count; t++)
         one->figures[t] = imk_drift_figures_of(&one->analysis->total[t]);
-    return find_budget(r, one, arena) ? IMK_OK
+    return find_budget(r, one, arena) ? find_missing(r, one, executor, error)
                                       : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
 }
 
@@ -215,22 +246,40 @@ imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
     return status;
 }
 
-imk_status imk_drift_models_take_runs(imk_drift_models *r, size_t runs, const double *errors,
-                                      imk_error *error)
+/* Mean of the runs that are numbers. */
+static double mean_square(size_t runs, size_t stride, const double *square)
+{
+    double sum = 0.0;
+    size_t count = 0;
+    for (size_t k = 0; k < runs; k++)
+        if (isfinite(square[k * stride])) {
+            sum += square[k * stride];
+            count++;
+        }
+    return count > 0 ? sum / (double)count : (double)NAN;
+}
+
+imk_status imk_drift_models_take_runs(imk_drift_models *r, size_t runs, int degrees,
+                                      const double *errors, imk_error *error)
 {
     imki_arena *arena = &((holder *)r)->arena;
     const size_t rows = r->times->row_count;
+    const size_t states = degrees > 0 ? IMK_DRIFT_AIDED_STATES : IMK_DRIFT_STATES;
     double *workspace = imki_resize(&arena->allocator, NULL, (runs + 1) * sizeof *workspace);
     r->run_count = runs;
+    r->nees_degrees = degrees;
     r->low = imki_arena_take(arena, rows * sizeof *r->low);
     r->high = imki_arena_take(arena, rows * sizeof *r->high);
     r->used = imki_arena_take(arena, rows * sizeof *r->used);
+    r->nees = imki_arena_take(arena, rows * sizeof *r->nees);
     r->found = imki_arena_take(arena, rows * sizeof *r->found);
-    const bool there = workspace && r->low && r->high && r->used && r->found;
-    for (size_t k = 0; k < rows && there; k++)
-        r->found[k] =
-            imk_drift_figures_of_runs(runs, rows * IMK_DRIFT_STATES, errors + k * IMK_DRIFT_STATES,
-                                      workspace, &r->low[k], &r->high[k], &r->used[k]);
+    const bool there = workspace && r->low && r->high && r->used && r->found && r->nees;
+    for (size_t k = 0; k < rows && there; k++) {
+        const double *row = errors + k * states;
+        r->found[k] = imk_drift_figures_of_runs(runs, rows * states, row, workspace, &r->low[k],
+                                                &r->high[k], &r->used[k]);
+        r->nees[k] = degrees > 0 ? mean_square(runs, rows * states, row + IMK_DRIFT_STATES) : 0.0;
+    }
     imki_resize(&arena->allocator, workspace, 0);
     return there ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
 }

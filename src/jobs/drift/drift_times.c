@@ -58,15 +58,26 @@ static size_t usual_times(double duration, double at[IMK_DRIFT_ROWS_MAX])
     return count;
 }
 
-/* Times between, of a curve that ends with the last row. @return how many times there are */
-static size_t fill(double *time, size_t rows, size_t linear)
+/* The first row behind the origin. */
+static double first_after(const double *time, size_t rows, double origin)
 {
-    const double first = time[0] < 10 ? time[0] : 10, last = time[rows - 1];
+    for (size_t i = 0; i < rows; i++)
+        if (time[i] > origin)
+            return time[i] - origin;
+    return 0;
+}
+
+/* Times between, of a curve from the origin that ends with the last row. @return how many times
+ * there are */
+static size_t fill(double *time, size_t rows, size_t linear, double origin)
+{
+    const double row = first_after(time, rows, origin), last = time[rows - 1] - origin;
+    const double start = origin > 0 ? 1 : 10, first = row < start ? row : start;
     size_t count = rows;
-    for (size_t i = 0; last > first && i < CURVE_POINTS; i++)
-        time[count++] = first * pow(last / first, (double)i / CURVE_POINTS);
+    for (size_t i = 0; last > first && first > 0 && i < CURVE_POINTS; i++)
+        time[count++] = origin + first * pow(last / first, (double)i / CURVE_POINTS);
     for (size_t i = 1; i < linear; i++)
-        time[count++] = last * (double)i / (double)linear;
+        time[count++] = origin + last * (double)i / (double)linear;
     return count;
 }
 
@@ -78,7 +89,7 @@ static imk_status check_positive(const char *field, double value, imk_error *err
 }
 
 imk_status imk_drift_times_choose(double duration, size_t count, const double *stated,
-                                  double wanted, double rate, bool curves,
+                                  double wanted, double rate, bool curves, double origin,
                                   const imk_allocator *allocator, imk_drift_times *times,
                                   imk_error *error)
 {
@@ -104,7 +115,8 @@ imk_status imk_drift_times_choose(double duration, size_t count, const double *s
     if (wanted > 0)
         at[rows++] = wanted;
     rows = tidy(at, rows, rate);
-    const size_t swings = at[rows - 1] > period ? (size_t)(8 * at[rows - 1] / period) : 0;
+    const double length = at[rows - 1] - origin;
+    const size_t swings = length > period ? (size_t)(8 * length / period) : 0;
     const size_t linear = swings > 1000 ? 1000 : swings;
     const size_t room = rows + CURVE_POINTS + linear;
     times->time = imki_resize(&times->allocator, NULL, room * sizeof *times->time);
@@ -114,7 +126,7 @@ imk_status imk_drift_times_choose(double duration, size_t count, const double *s
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     }
     memcpy(times->time, at, rows * sizeof *at);
-    times->count = tidy(times->time, curves ? fill(times->time, rows, linear) : rows, rate);
+    times->count = tidy(times->time, curves ? fill(times->time, rows, linear, origin) : rows, rate);
     for (size_t i = 0; i < times->count; i++)
         for (size_t k = 0; k < rows; k++)
             if (times->time[i] == at[k])

@@ -3,7 +3,7 @@
  * model, and what the next better class needs. */
 #include "imukit/grade_position.h"
 
-#include "jobs/arena_internal.h"
+#include "jobs/drift/drift_models_internal.h"
 #include "jobs/job_internal.h"
 #include "jobs/record/record_check_internal.h"
 
@@ -135,7 +135,11 @@ static imk_status analyse_way(imk_graded *one, int way, const imk_job *job, imki
     find_shares(one, analysis);
     one->omitted_count = analysis->omitted_count;
     memcpy(one->omitted, analysis->omitted, sizeof one->omitted);
-    return find_needs(one, analysis, scratch, error);
+    settings.time_count = IMK_GRADE_TIMES - IMK_GRADE_HOUR;
+    settings.time = &times[IMK_GRADE_HOUR];
+    status = imki_drift_missing(one->model, &settings, 1U << IMK_REQUIRED_CEP, job->executor,
+                                scratch, one->missing, &one->missing_count, error);
+    return status == IMK_OK ? find_needs(one, analysis, scratch, error) : status;
 }
 
 /* A position needs three of each along body x, y, z: imk_drift_validate() knows. */

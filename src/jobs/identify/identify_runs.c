@@ -7,6 +7,7 @@
 #include "jobs/arena_internal.h"
 
 #include "imukit/distributions.h"
+#include "imukit/noise.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -69,16 +70,24 @@ static imk_status pool_curves(imk_identify_several *s, size_t channel, imki_aren
                                &s->joint.curve[channel]);
 }
 
-/* Means of runs that follow one another without a break differ by the Allan deviation at their
- * length; more than that is from run to run. */
+/* What noise makes of the mean of a run: the Allan deviation at its length, and of flicker noise
+ * also what is slower, since it differs from run to run by itself, as the simulator draws it. */
+static double mean_variance(const imk_identification *model, double dt, size_t n)
+{
+    const imk_flicker flicker = {model->term[IMK_NOISE_BIAS_INSTABILITY].value, 0};
+    return imk_identification_allan_variance(model, dt, n, -1) +
+           imk_flicker_mean_variance(flicker, dt, n) -
+           imk_identification_allan_variance(model, dt, n, IMK_NOISE_BIAS_INSTABILITY);
+}
+
+/* More than that is from run to run. */
 static imk_status compare_means(imk_identify_several *s, size_t channel, imk_error *error)
 {
     double mean[IMK_JOINT_RECORDS_MAX], sigma[IMK_JOINT_RECORDS_MAX];
     for (size_t r = 0; r < s->count; r++) {
         const imk_even_record *record = &s->log[r]->record;
         mean[r] = s->log[r]->result[channel].mean;
-        sigma[r] = sqrt(imk_identification_allan_variance(&s->joint.result[channel], record->dt,
-                                                          record->rows, -1));
+        sigma[r] = sqrt(mean_variance(&s->joint.result[channel], record->dt, record->rows));
     }
     return imk_repeatability_estimate(s->count, mean, sigma, NULL, s->joint.settings.confidence,
                                       &s->bias[channel], error);

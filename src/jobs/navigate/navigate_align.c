@@ -10,50 +10,10 @@
 
 static const double degree = 0.017453292519943295;
 
-static imk_vector3 mean_of_rows(const imk_navigate_log *n, int sensor, size_t rows)
-{
-    imk_vector3 sum = {{0}};
-    for (size_t row = 0; row < rows; row++)
-        for (int i = 0; i < 3; i++)
-            sum.v[i] += n->reading[3 * sensor + i][row];
-    return imk_vector3_scale(sum, 1.0 / (double)rows);
-}
-
 /* Mean reading of the time of alignment. */
 static imk_vector3 mean_reading(const imk_navigate_log *n, int sensor)
 {
-    return mean_of_rows(n, sensor, n->first);
-}
-
-/* The unit, unlike its own, in which the numbers of a column would be gravity, or the Earth's
- * rotation, within a tolerance; NULL: none. @param ratio  to that, in its own unit */
-static const char *likely_unit(const imk_log_column *column, double ratio, double tolerance)
-{
-    enum { UNITS = 6 };
-    static const char *const lists[4][UNITS] = {
-        {"rad/s", "deg/s", "deg/h", "mrad/s", "mdeg/s", "urad/s"},
-        {"rad", "deg", "arcsec", "mrad", "mdeg", "urad"},
-        {"m/s^2", "g", "mg", "ug", "mm/s^2", "cm/s^2"},
-        {"m/s", "g*s", "mg*s", "ug*s", "mm/s", "cm/s"}};
-    const int sensor = column->quantity == IMK_QUANTITY_SPECIFIC_FORCE;
-    const char *const *units = lists[2 * sensor + column->increment];
-    for (int k = 0; k < UNITS; k++) {
-        const double scale = imk_unit_of(units[k]).scale / column->unit.scale;
-        if (fabs(ratio * scale - 1.0) < tolerance && strcmp(units[k], column->unit.text) != 0)
-            return units[k];
-    }
-    return NULL;
-}
-
-static const imk_log_column *first_column(const imk_navigate_log *n, imk_quantity quantity)
-{
-    return &n->record.log.column[imk_log_find(&n->record.log, quantity, 0)];
-}
-
-/* A finding with the unit of a column and the one it is likely to be, if any. */
-static void names_of_units(const imk_log_column *column, const char *likely, char text[96])
-{
-    snprintf(text, 96, "%s\t%s", column->unit.text, likely ? likely : "");
+    return imki_navigate_mean(n, sensor, 0, n->first);
 }
 
 /* Of the force at rest to gravity. */
@@ -67,12 +27,12 @@ static double gravity_ratio(const imk_navigate_log *n)
 static imk_status check_force(imk_navigate_log *n, imk_error *error)
 {
     const double tolerance = 0.05, ratio = gravity_ratio(n);
-    if (fabs(ratio - 1.0) <= tolerance)
+    if (fabs(ratio - 1.0) <= tolerance + 3.0 * imki_navigate_bias_size(n, 1) / 9.80665)
         return IMK_OK;
-    const imk_log_column *column = first_column(n, IMK_QUANTITY_SPECIFIC_FORCE);
-    const char *unit = likely_unit(column, ratio, tolerance);
+    const imk_log_column *column = imki_navigate_first_column(n, IMK_QUANTITY_SPECIFIC_FORCE);
+    const char *unit = imki_navigate_likely_unit(column, ratio, tolerance);
     char names[96];
-    names_of_units(column, unit, names);
+    imki_navigate_unit_names(column, unit, names);
     return imki_fail(&n->findings, error, IMK_ERROR_UNIT_UNKNOWN, "no_gravity", names,
                      IMKI_NUMBERS(ratio, unit != NULL));
 }
@@ -81,20 +41,9 @@ static imk_status check_force(imk_navigate_log *n, imk_error *error)
 static void check_gravity_unit(imk_navigate_log *n)
 {
     const double ratio = gravity_ratio(n);
-    const imk_log_column *column = first_column(n, IMK_QUANTITY_SPECIFIC_FORCE);
+    const imk_log_column *column = imki_navigate_first_column(n, IMK_QUANTITY_SPECIFIC_FORCE);
     if (fabs(ratio - 9.80665 / 9.780327) < 1e-4 && strchr(column->unit.text, 'g') != NULL)
         imki_find(&n->findings, IMK_FINDING_WARNING, "standard_gravity", NULL, IMKI_NUMBERS(ratio));
-}
-
-/* 1 sigma of a gyro's bias as the model has it, worst axis. */
-static double bias_size(const imk_navigate_log *n)
-{
-    const imk_model *model = n->settings.model;
-    double worst = 0.0;
-    for (int i = 0; i < 3 && model; i++)
-        worst = fmax(worst, hypot(model->gyro.bias.repeatability.value[i],
-                                  model->gyro.noise.bias_instability.value[i]));
-    return worst;
 }
 
 /* The angle between force and rotation is that of the place: 90 deg + latitude. */
@@ -105,18 +54,18 @@ static void check_rotation(imk_navigate_log *n)
     const double sine =
         -imk_vector3_dot(rate, force) / (imk_vector3_norm(rate) * imk_vector3_norm(force));
     const double latitude = asin(fmin(1.0, fmax(-1.0, -sine)));
-    const double tolerance = 0.1 + 3.0 * bias_size(n) / IMK_EARTH_RATE;
+    const double tolerance = 0.1 + 3.0 * imki_navigate_bias_size(n, 0) / IMK_EARTH_RATE;
     if (!(fabs(ratio - 1.0) <= tolerance)) {
-        const imk_log_column *column = first_column(n, IMK_QUANTITY_ANGULAR_RATE);
-        const char *unit = likely_unit(column, ratio, 0.1);
+        const imk_log_column *column = imki_navigate_first_column(n, IMK_QUANTITY_ANGULAR_RATE);
+        const char *unit = imki_navigate_likely_unit(column, ratio, 0.1);
         char names[96];
-        names_of_units(column, unit, names);
+        imki_navigate_unit_names(column, unit, names);
         imki_find(&n->findings, IMK_FINDING_WARNING, "earth_rate", names,
                   IMKI_NUMBERS(ratio, unit != NULL, n->settings.heading_given));
         return;
     }
     /* Of the angle 3 deg are a bias of 0.8 deg/h, or an accelerometer's of 50 mg. */
-    const double diagnostic = 3.0 * degree + 3.0 * bias_size(n) / IMK_EARTH_RATE;
+    const double diagnostic = 3.0 * degree + 3.0 * imki_navigate_bias_size(n, 0) / IMK_EARTH_RATE;
     const double place = n->settings.place.latitude;
     const bool opposite = fabs(latitude + place) < diagnostic && fabs(latitude) > diagnostic;
     if (opposite || fabs(latitude - place) > diagnostic)
@@ -124,30 +73,10 @@ static void check_rotation(imk_navigate_log *n)
                   IMKI_NUMBERS(latitude / degree, place / degree, opposite));
 }
 
-/* In a given attitude the force of the first second, less gravity, is an acceleration. */
-static void check_start(imk_navigate_log *n)
-{
-    const imk_navigate_log_settings *o = &n->settings;
-    const double g = imk_normal_gravity(o->place.latitude, o->place.height), tolerance = 0.05;
-    const size_t second = n->record.dt < 1.0 ? imk_samples_in(1.0, n->record.dt) : 1;
-    const imk_vector3 force = mean_of_rows(n, 1, second < n->record.rows ? second : n->record.rows);
-    imk_vector3 acceleration = imk_matrix3_apply(
-        imk_matrix3_from_euler(o->attitude[0], o->attitude[1], o->attitude[2]), force);
-    acceleration.v[2] += g;
-    if (imk_vector3_norm(acceleration) <= tolerance * g)
-        return;
-    const imk_log_column *column = first_column(n, IMK_QUANTITY_SPECIFIC_FORCE);
-    const char *unit = likely_unit(column, imk_vector3_norm(force) / g, tolerance);
-    char names[96];
-    names_of_units(column, unit, names);
-    imki_find(&n->findings, IMK_FINDING_WARNING, "start_acceleration", names,
-              IMKI_NUMBERS(imk_vector3_norm(acceleration), unit != NULL));
-}
-
 imk_status imki_navigate_check(imk_navigate_log *n, imk_error *error)
 {
     if (!imki_navigate_aligns(n)) {
-        check_start(n);
+        imki_navigate_check_given(n);
         return IMK_OK;
     }
     const imk_status status = check_force(n, error);
@@ -164,25 +93,15 @@ static void given_attitude(imk_navigate_log *n)
     memcpy(n->attitude, n->settings.attitude, sizeof n->attitude);
     memcpy(n->attitude_sigma, n->settings.attitude_sigma, sizeof n->attitude_sigma);
     const imk_matrix3 c_nb = imk_matrix3_from_euler(n->attitude[0], n->attitude[1], n->attitude[2]);
+    const double *v = n->settings.velocity;
     n->start = imk_navigation_state_ned(n->record.dt * (double)n->first, n->settings.place,
-                                        (imk_vector3){{0}}, c_nb);
+                                        (imk_vector3){{v[0], v[1], v[2]}}, c_nb);
     n->attitude[0] = remainder(n->attitude[0], 360.0 * degree);
     n->attitude[2] = remainder(n->attitude[2], 360.0 * degree);
     const double c = cos(n->attitude[2]), s = sin(n->attitude[2]);
     const double roll = n->attitude_sigma[0], pitch = n->attitude_sigma[1];
     n->attitude_sigma[0] = hypot(c * roll, s * pitch);
     n->attitude_sigma[1] = hypot(s * roll, c * pitch);
-}
-
-/* Gravity's turn in inertial axes is lost in biases larger than the Earth's rotation, and the tilt
- * with it: of 20 deg that they turn in the time it is off by 14. The mean force asks no gyro. */
-static imk_alignment_method chosen_method(const imk_navigate_log *n)
-{
-    const double coarse = 1.5 * IMK_EARTH_RATE;
-    if (n->settings.method_given)
-        return n->settings.method;
-    return imk_vector3_norm(mean_reading(n, 0)) > coarse ? IMK_ALIGNMENT_MEANS
-                                                         : IMK_ALIGNMENT_INERTIAL;
 }
 
 static imk_status self_align(imk_navigate_log *n, imki_arena *scratch, imk_error *error)
@@ -230,14 +149,31 @@ static void turn_to_heading(imk_navigate_log *n)
     n->alignment.state = n->start;
 }
 
+/* By means first, unless the method is stated: they say whether the biases leave a north to find.
+ */
+static imk_status align_by_choice(imk_navigate_log *n, imki_arena *scratch, imk_error *error)
+{
+    const bool given = n->settings.method_given;
+    n->method = given ? n->settings.method : IMK_ALIGNMENT_MEANS;
+    imk_status status = self_align(n, scratch, error);
+    if (status == IMK_OK)
+        imki_navigate_find_north(n);
+    if (given || n->coarse || status == IMK_ERROR_MEMORY)
+        return status;
+    n->method = IMK_ALIGNMENT_INERTIAL;
+    status = self_align(n, scratch, error);
+    if (status == IMK_OK)
+        imki_navigate_doubt_heading(n);
+    return status;
+}
+
 imk_status imki_navigate_align(imk_navigate_log *n, imki_arena *scratch, imk_error *error)
 {
     if (!imki_navigate_aligns(n)) {
         given_attitude(n);
         return IMK_OK;
     }
-    n->method = chosen_method(n);
-    const imk_status status = self_align(n, scratch, error);
+    const imk_status status = align_by_choice(n, scratch, error);
     if (status != IMK_OK)
         return status;
     n->start = n->alignment.state;

@@ -20,7 +20,8 @@ imk_navigate_log_settings imk_navigate_log_default(void)
                                        .hold_height = true,
                                        .samples = 3,
                                        .interval = 1,
-                                       .standard_gravity = standard_gravity};
+                                       .standard_gravity = standard_gravity,
+                                       .aid_until = (double)INFINITY};
 }
 
 void imk_navigate_log_free(imk_navigate_log *result)
@@ -29,6 +30,9 @@ void imk_navigate_log_free(imk_navigate_log *result)
         return;
     const imk_allocator allocator = result->record.log.allocator;
     imki_resize(&allocator, result->track[0], 0);
+    imki_resize(&allocator, result->filtered[0], 0);
+    for (size_t k = 0; k < IMK_AID_KIND_COUNT; k++)
+        imki_resize(&allocator, result->aid[k].time, 0);
     imk_even_record_free(&result->record);
     imki_resize(&allocator, result, 0);
 }
@@ -48,8 +52,23 @@ static imk_status check_settings(const imk_navigate_log_settings *s, imk_error *
         {"stops", s->stops == IMK_STOPS_FOUND && s->align == 0, 0, 0, "an alignment before stops"},
         {"stop_length", timetable && !(s->stop_length > 0 && s->stop_length <= s->stop_period),
          s->stop_length, s->stop_period, "more than 0 s, at most the period"},
+        {"aids", s->aids && !s->model, 0, 0, "a model: aids need one"},
+        {"smooth", s->smooth && !s->model, 0, 0, "a model: smoothing needs one"},
+        {"smooth", s->smooth && s->still_rotation > 0, 0, 0,
+         "no still_rotation, whose noise is not a state"},
+        {"aid_count", s->aid_count > IMK_AIDS_MAX, (double)s->aid_count, IMK_AIDS_MAX,
+         "at most 8 kinds"},
+        {"aid_delay", !(fabs(s->aid_delay) <= 1e18), s->aid_delay, 0, "a time"},
+        {"aid_interval", !(s->aid_interval >= 0), s->aid_interval, 0, "at least 0 s"},
+        {"aid_until", !(s->aid_until >= 0), s->aid_until, 0, "at least 0 s"},
         {"still_velocity", !(s->still_velocity > 0), s->still_velocity, 0, "more than 0 m/s"},
         {"still_rotation", !(s->still_rotation >= 0), s->still_rotation, 0, "at least 0 rad/s"},
+        {"velocity", s->velocity_given && s->align > 0, s->align, 0,
+         "0: a unit that aligns itself is at rest"},
+        {"velocity", !(fabs(s->velocity[0]) + fabs(s->velocity[1]) + fabs(s->velocity[2]) <= 1e5),
+         s->velocity[0], 1e5, "at most 1e5 m/s"},
+        {"velocity", s->hold_height && s->velocity[2] != 0, s->velocity[2], 0,
+         "0 downwards while the height is held"},
         {"interval", !(s->interval > 0), s->interval, 0, "more than 0 s"},
         {"standard_gravity", !(g > 9.7 && g < 9.9), g, g < 9.8 ? 9.7 : 9.9,
          "between 9.7 and 9.9 m/s^2"}};
@@ -57,6 +76,16 @@ static imk_status check_settings(const imk_navigate_log_settings *s, imk_error *
         if (rules[k].wrong)
             return imki_refuse(error, IMK_ERROR_RANGE, rules[k].field, rules[k].value,
                                rules[k].limit, rules[k].expected);
+    for (size_t k = 0; k < s->aid_count; k++) {
+        const imk_status status = imk_aid_validate(&s->aid[k], error);
+        if (status != IMK_OK)
+            return status;
+    }
+    for (int i = 0; i < 3; i++)
+        if (!(s->position_sigma[i] >= 0 && s->velocity_sigma[i] >= 0))
+            return imki_refuse(error, IMK_ERROR_RANGE,
+                               s->position_sigma[i] >= 0 ? "velocity_sigma" : "position_sigma",
+                               s->position_sigma[i], 0, "at least 0");
     return s->model ? imki_check_model(s->model, error) : IMK_OK;
 }
 
@@ -126,11 +155,8 @@ static imk_status find_channels(imk_navigate_log *n, imk_error *error)
 
 imk_status imki_navigate_channels(imk_navigate_log *n, imk_error *error)
 {
-    const imk_log *log = &n->record.log;
     const double align = n->settings.align, dt = n->record.dt;
-    const int time = imk_log_find(log, IMK_QUANTITY_TIME, -1);
-    if (time >= 0 && n->record.rows == log->rows && isfinite(log->data[time][0]))
-        n->first_time = log->data[time][0];
+    n->first_time = n->record.first_time;
     imk_status status = find_channels(n, error);
     if (status == IMK_OK)
         status = scale_gravity(n, error);
@@ -208,5 +234,8 @@ imk_status imk_navigate_log_run(const imk_record_source *source,
     status =
         imk_even_record_load(source, settings->gaps, job, &made->record, &made->findings, error);
     made->record.log.allocator = job->allocator;
-    return status == IMK_OK ? navigate(made, job, error) : status;
+    if (status == IMK_OK)
+        status = navigate(made, job, error);
+    made->settings.aids = NULL; /* the caller's, for the call */
+    return status;
 }

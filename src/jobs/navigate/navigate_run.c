@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The run: samples through the mechanisation, updates where the unit stands, and the track. */
-#include "navigate_log_internal.h"
+#include "navigate_aids_internal.h"
 
 #include <math.h>
 
@@ -14,16 +14,20 @@ static const double rest_fraction = 0.9, rest_velocity = 0.5; /* [m/s] */
 /* Updates refused in a row by which the estimate counts as lost; of a timetable, and found. */
 enum { REFUSED_MAX = 20, STANDS_REFUSED_MAX = 3 };
 
-static imk_status describe_errors(imk_navigate_log *n, imk_zero_velocity_settings *s,
+static imk_status describe_errors(imk_navigate_log *n, imk_navigation_filter_settings *s,
                                   imk_error *error)
 {
     const imk_navigate_log_settings *o = &n->settings;
     const bool aligned = imki_navigate_aligns(n);
-    imk_zero_velocity_default(s);
+    imk_navigation_filter_default(s);
     s->hold_height = o->hold_height;
     s->samples = o->samples;
     s->velocity_sigma = o->still_velocity;
     s->rotation_sigma = o->still_rotation;
+    for (int i = 0; i < 3; i++) {
+        s->initial_sigma[i] = o->position_sigma[i];
+        s->initial_sigma[3 + i] = o->velocity_sigma[i];
+    }
     if (aligned)
         s->initial_sigma[3] = s->initial_sigma[4] = s->initial_sigma[5] = o->still_velocity;
     for (int i = 0; i < 3 && !(aligned && o->model); i++)
@@ -35,12 +39,14 @@ static imk_status describe_errors(imk_navigate_log *n, imk_zero_velocity_setting
     imk_navigation_state_to_ned(&n->start, &place, NULL, &c_nb);
     const imk_matrix3 c_bn = imk_matrix3_transpose(c_nb);
     const imk_vector3 up = {{0.0, 0.0, -imk_normal_gravity(place.latitude, place.height)}};
-    imk_status status = imk_zero_velocity_describe(
+    imk_status status = imk_navigation_filter_describe(
         o->model, n->record.dt, imk_matrix3_apply(c_bn, imk_earth_rate(place.latitude)),
         imk_matrix3_apply(c_bn, up), s, error);
-    if (status == IMK_OK && aligned)
-        status = imk_zero_velocity_aligned(&n->alignment, n->method, !o->heading_given,
-                                           n->record.dt * (double)n->first, s);
+    if (status == IMK_OK && aligned) {
+        imki_navigate_free_biases(n, s);
+        status = imk_navigation_filter_aligned(&n->alignment, n->method, imki_navigate_north(n),
+                                               n->record.dt * (double)n->first, s);
+    }
     if (status == IMK_OK)
         return status;
     return imki_fail(&n->findings, error, status,
@@ -80,37 +86,20 @@ static imk_vector3 acceleration(const imk_navigate_log *n, const imk_navigation_
 }
 
 /* @param sum  of the accelerations of `count` samples since the row before */
-static void put_track(imk_navigate_log *n, const imk_zero_velocity_estimate *estimate, double time,
-                      imk_vector3 sum, size_t count)
+static void put_track(imk_navigate_log *n, const imk_navigation_filter_estimate *estimate,
+                      double time, imk_vector3 sum, size_t count)
 {
     double row[IMK_TRACK_COLUMNS];
-    imk_geodetic place;
-    imk_vector3 velocity;
-    imk_matrix3 c_nb;
-    imk_navigation_state_to_ned(&estimate->state, &place, &velocity, &c_nb);
-    const imk_vector3 way = imk_navigation_difference_ned(&estimate->state, &n->start);
+    imki_navigate_track_row(n, estimate, row);
     row[IMK_TRACK_TIME] = time;
-    row[IMK_TRACK_LATITUDE] = place.latitude;
-    row[IMK_TRACK_LONGITUDE] = place.longitude;
-    row[IMK_TRACK_HEIGHT] = place.height;
-    for (int i = 0; i < 3; i++) {
-        row[IMK_TRACK_NORTH + i] = way.v[i];
-        row[IMK_TRACK_VELOCITY + i] = velocity.v[i];
-    }
-    /* Down is along the vertical, north and east across that of the start: a way of 40 km would
-     * else lead down by the curvature of the Earth. */
-    row[IMK_TRACK_NORTH + 2] = n->settings.place.height - place.height;
-    imk_matrix3_to_euler(c_nb, &row[IMK_TRACK_ROLL], &row[IMK_TRACK_PITCH], &row[IMK_TRACK_YAW]);
+    const imk_geodetic place = imk_geodetic_from_ecef(estimate->state.position);
     const imk_matrix3 axes = imk_ned_axes(place.latitude, place.longitude);
     sum = imk_matrix3_apply(imk_matrix3_transpose(axes), sum);
     for (int i = 0; i < 3; i++)
         row[IMK_TRACK_ACCELERATION + i] = count > 0 ? sum.v[i] / (double)count : 0.0;
-    for (int i = 0; i < IMK_NAVIGATION_ERRORS; i++)
-        row[IMK_TRACK_SIGMA + i] = sqrt(fmax(0.0, estimate->covariance[i][i]));
     for (int k = 0; k < IMK_TRACK_COLUMNS; k++)
         n->track[k][n->track_rows] = row[k];
     n->track_rows++;
-    n->largest = fmax(n->largest, hypot(way.v[0], way.v[1]));
 }
 
 /* ---- updates -----------------------------------------------------------------------------------
@@ -155,10 +144,10 @@ static imk_status learn_rest(imk_navigate_log *n, stops *s, imk_error *error)
 
 /* Did the velocity change by more than tilt and bias explain, since the unit last seemed to stand?
  */
-static void notice_motion(const imk_zero_velocity *filter, stops *s, bool stands,
+static void notice_motion(const imk_navigation_filter *filter, stops *s, bool stands,
                           double force_sigma)
 {
-    const imk_navigation_state now = imk_zero_velocity_state(filter);
+    const imk_navigation_state now = imk_navigation_filter_state(filter);
     const double change = imk_vector3_norm(imk_vector3_subtract(now.velocity, s->velocity));
     if (change > rest_velocity + 4.0 * force_sigma * (now.time - s->time))
         s->moved = true;
@@ -180,12 +169,12 @@ static imk_vector3 smooth_velocity(const stops *s, imk_vector3 now)
  * best at the beginning. Refused there, the rest of the stretch is left out too: later the velocity
  * would be so uncertain that none fits it as well. For the same reason the next stretch is believed
  * to be a stand only when the velocity has changed so as to be nearer to 0. */
-static void update_when_still(imk_zero_velocity *filter, stops *s, bool stands)
+static void update_when_still(imk_navigation_filter *filter, stops *s, bool stands)
 {
-    const imk_vector3 now = imk_zero_velocity_state(filter).velocity;
+    const imk_vector3 now = imk_navigation_filter_state(filter).velocity;
     if (!stands) {
         s->tried = s->steady = false;
-        imk_zero_velocity_moved(filter);
+        imk_navigation_filter_moved(filter);
         return;
     }
     if (!s->steady && !s->stood)
@@ -194,7 +183,7 @@ static void update_when_still(imk_zero_velocity *filter, stops *s, bool stands)
         const double speed = imk_vector3_norm(smooth_velocity(s, now));
         const bool goes_on = s->smooth_speed > 0.0 && speed > 0.5 * s->smooth_speed;
         s->tried = true;
-        s->steady = goes_on || !imk_zero_velocity_update(filter);
+        s->steady = goes_on || !imk_navigation_filter_stand(filter);
         if (!s->steady) {
             s->smooth_speed = 0.0;
         } else if (s->smooth_speed > 0.0) {
@@ -204,18 +193,18 @@ static void update_when_still(imk_zero_velocity *filter, stops *s, bool stands)
             s->smooth_speed = imk_vector3_norm(now);
         }
     } else if (!s->steady) {
-        imk_zero_velocity_update(filter);
+        imk_navigation_filter_stand(filter);
     }
     s->steady_windows += s->steady;
     if (s->steady)
         s->smooth_end = now;
 }
 
-static void watch(const imk_navigate_log *n, imk_zero_velocity *filter, stops *s, size_t row)
+static void watch(const imk_navigate_log *n, imk_navigation_filter *filter, stops *s, size_t row)
 {
     if (!(s->detector.window > 0.0))
         return;
-    const imk_rest_readings rest = imk_zero_velocity_rest(filter);
+    const imk_rest_readings rest = imk_navigation_filter_rest(filter);
     const imk_standstill_verdict verdict =
         imk_standstill_add(&s->detector, n->record.dt, imki_navigate_increment(n, 0, row),
                            imki_navigate_increment(n, 1, row), &rest);
@@ -231,7 +220,7 @@ static void watch(const imk_navigate_log *n, imk_zero_velocity *filter, stops *s
 }
 
 /* Stops of a timetable: one at the end of each period. */
-static void keep_timetable(const imk_navigate_log *n, imk_zero_velocity *filter, stops *s,
+static void keep_timetable(const imk_navigate_log *n, imk_navigation_filter *filter, stops *s,
                            double time)
 {
     const double half = 0.5 * n->record.dt;
@@ -242,10 +231,10 @@ static void keep_timetable(const imk_navigate_log *n, imk_zero_velocity *filter,
         return;
     }
     if (s->since_update == 0.0)
-        imk_zero_velocity_moved(filter); /* the stop begins with this sample, or just did */
+        imk_navigation_filter_moved(filter); /* the stop begins with this sample, or just did */
     s->since_update += n->record.dt;
     if (s->since_update > every - half) {
-        imk_zero_velocity_update(filter);
+        imk_navigation_filter_stand(filter);
         s->since_update = 0.5 * half; /* not 0: the stop goes on */
     }
 }
@@ -253,41 +242,46 @@ static void keep_timetable(const imk_navigate_log *n, imk_zero_velocity *filter,
 /* ---- run ---------------------------------------------------------------------------------------
  */
 
-static imk_status follow(imk_navigate_log *n, imk_zero_velocity *filter, stops *s, size_t every,
+static imk_status follow(imk_navigate_log *n, imk_navigation_filter *filter, stops *s,
+                         imki_navigate_aids *aids, imk_navigation_smoother *smoother, size_t every,
                          const imk_job *job, imk_error *error)
 {
     imk_status status = IMK_OK;
-    imk_zero_velocity_get(filter, &n->end);
+    imk_navigation_filter_get(filter, &n->end);
     imk_vector3 sum = {{0}};
     size_t count = 0;
     put_track(n, &n->end, n->first_time + n->record.dt * ((double)n->first - 1.0), sum, count);
+    status = imki_navigate_mark(smoother, error);
     for (size_t row = n->first; row < n->record.rows && status == IMK_OK; row++) {
         const size_t done = row + 1 - n->first;
-        const imk_navigation_state before = imk_zero_velocity_state(filter);
-        imk_zero_velocity_step(filter, n->record.dt, imki_navigate_increment(n, 0, row),
-                               imki_navigate_increment(n, 1, row));
-        const imk_navigation_state after = imk_zero_velocity_state(filter);
+        const imk_navigation_state before = imk_navigation_filter_state(filter);
+        imk_navigation_filter_step(filter, n->record.dt, imki_navigate_increment(n, 0, row),
+                                   imki_navigate_increment(n, 1, row));
+        const imk_navigation_state after = imk_navigation_filter_state(filter);
         sum = imk_vector3_add(sum, acceleration(n, &before, &after, row));
         count++;
+        imki_aids_update(n, aids, filter, row);
         watch(n, filter, s, row);
         if (n->settings.stops == IMK_STOPS_TIMETABLE)
             keep_timetable(n, filter, s, n->record.dt * (double)done);
         if (done % every == 0 || row + 1 == n->record.rows) {
-            imk_zero_velocity_get(filter, &n->end);
+            imk_navigation_filter_get(filter, &n->end);
             put_track(n, &n->end, n->first_time + n->record.dt * (double)row, sum, count);
             sum = (imk_vector3){{0}};
             count = 0;
-            status = imki_job_progress(job, "navigating", "rows", row, n->record.rows, error);
+            status = imki_navigate_mark(smoother, error);
+            if (status == IMK_OK)
+                status = imki_job_progress(job, "navigating", "rows", row, n->record.rows, error);
         }
     }
-    n->counts = imk_zero_velocity_counted(filter);
-    n->at_rest = is_at_rest(s);
+    n->counts = imk_navigation_filter_counted(filter);
+    n->at_rest = is_at_rest(s) && n->aid_count == 0;
     return status;
 }
 
 static void warn_of_updates(imk_navigate_log *n, const stops *s)
 {
-    const imk_zero_velocity_counts *c = &n->counts;
+    const imk_navigation_filter_counts *c = &n->counts;
     const double refused = (double)c->refused, tried = refused + (double)c->accepted;
     const bool found = n->settings.stops == IMK_STOPS_FOUND;
     const imk_finding_level level = IMK_FINDING_WARNING;
@@ -321,26 +315,45 @@ static imk_status check_track(imk_navigate_log *n, imk_error *error)
 imk_status imki_navigate_follow(imk_navigate_log *n, const imk_job *job, imki_arena *scratch,
                                 imk_error *error)
 {
-    imk_zero_velocity_settings settings;
-    imk_zero_velocity *filter;
+    imk_navigation_filter_settings settings;
+    imk_navigation_filter *filter;
     stops s = {.velocity = n->start.velocity, .time = n->start.time};
     const double steps = n->settings.interval / n->record.dt;
     const size_t every = steps < 1.5 ? 1 : steps < 1e15 ? (size_t)llround(steps) : n->record.rows;
     imk_status status = describe_errors(n, &settings, error);
+    imki_navigate_aids *aids = imki_arena_take(scratch, sizeof *aids);
+    if (!aids)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    if (status == IMK_OK && n->settings.aids) {
+        status = imki_aids_load(n, job, scratch, aids, error);
+        if (status == IMK_OK)
+            status = imki_aids_start(n, aids, error);
+        if (status == IMK_OK)
+            imki_aids_describe(n, aids, &settings);
+    }
     if (status == IMK_OK && imki_navigate_aligns(n))
         status = learn_rest(n, &s, error);
     if (status == IMK_OK)
         status = make_track(n, every, error);
     if (status != IMK_OK)
         return status;
-    const size_t size = imk_zero_velocity_size(&settings);
+    const size_t size = imk_navigation_filter_size(&settings);
     void *memory = imki_arena_room(scratch, size);
-    status = memory ? imk_zero_velocity_start(&settings, &n->start, &filter, memory, size, error)
-                    : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    status = memory
+                 ? imk_navigation_filter_start(&settings, &n->start, &filter, memory, size, error)
+                 : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    imk_navigation_smoother *smoother = NULL;
     if (status == IMK_OK)
-        status = follow(n, filter, &s, every, job, error);
+        imki_navigate_start_biases(n, filter);
+    if (status == IMK_OK && n->settings.smooth)
+        status = imki_navigate_record(filter, scratch, &smoother, error);
+    if (status == IMK_OK)
+        status = follow(n, filter, &s, aids, smoother, every, job, error);
+    if (status == IMK_OK && smoother)
+        status = imki_navigate_smooth(n, smoother, error);
     if (status != IMK_OK)
         return status;
+    imki_aids_finish(n, aids, filter);
     warn_of_updates(n, &s);
     return check_track(n, error);
 }

@@ -140,6 +140,8 @@ static imk_status place_all(double rate, const double *time, imk_even_record *re
         place_rows(record, time, &grid, place);
     if (place && (grid.leaps || grid.places == 0 || !(grid.last_time > grid.first_time)))
         status = imki_fail(findings, error, IMK_ERROR_TIME_ORDER, "clock_leaps", NULL, 0, NULL);
+    if (place)
+        record->first_time = grid.first_time;
     if (status == IMK_OK && !(rate > 0))
         record->dt = (grid.last_time - grid.first_time) / (double)(grid.places - 1);
     if (status == IMK_OK && (grid.places != record->log.rows || record->unordered > 0) &&

@@ -87,14 +87,16 @@ static spacing inspect(const imk_even_record *record)
     return s;
 }
 
-/* The interval as the mean step over the rows used: the median step that found the gaps is off by
- * the resolution of the time column (7.8125 ms reads as 8 ms in whole milliseconds). */
+/* The time of the first row; and the interval as the mean step over the rows used: the median step
+ * that found the gaps is off by the resolution of the time column (7.8125 ms reads as 8 ms in whole
+ * milliseconds). */
 static void refine_interval(double rate, imk_even_record *record, size_t first, size_t last,
                             size_t steps)
 {
     const double *time = time_column(record);
     if (!(rate > 0) && time && steps > 0 && time[last] > time[first])
         record->dt = (time[last] - time[first]) / (double)steps;
+    record->first_time = time && isfinite(time[first]) ? time[first] : 0.0;
 }
 
 /* Keep rows start … start + length - 1. */

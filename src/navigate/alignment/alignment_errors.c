@@ -3,8 +3,8 @@
  *
  *     repeatability, 1 sigma of fixed values     s^2
  *     Gauss-Markov  2 s^2 t/T [1 - t/T (1 - exp(-T/t))]
- *     flicker       the same of 16 stages of variance (ln 4/pi) B^2 and times dt 4^j (noise.h):
- *                   those longer than T act as a bias, so that the sum is about (1.9 B)^2
+ *     flicker       the same of stages of variance (ln 4/pi) B^2 and times 0.85 T 4^-k (noise.h):
+ *                   those longer than T act as a bias, so that the sum is about (1.75 B)^2
  *     random walk   K^2 T/3
  *     sinusoid      (a^2/2) [sin(pi f T)/(pi f T)]^2
  *

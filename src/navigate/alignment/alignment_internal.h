@@ -13,12 +13,14 @@
  *
  *      d = -f/|f|,   e = d x w/|d x w|,   n = e x d       rows of C_nb
  *
- *  so that errors b of force and c of rate, in north-east-down axes, leave to first order
+ *  turned by what gravity at the place has toward the equator, so that errors b of force and c
+ *  of rate, in north-east-down axes, leave to first order
  *
  *      north: -b_E/g,   east: b_N/g,   down: b_E tan(L)/g - c_E/(w_ie cos L).
  *
  *  @return IMK_ERROR_SINGULAR with C_nb untouched when they are zero, parallel or not finite */
-imk_status imki_alignment_of_means(imk_vector3 force, imk_vector3 rate, imk_matrix3 *c_nb);
+imk_status imki_alignment_of_means(imk_vector3 force, imk_vector3 rate, imk_geodetic place,
+                                   imk_matrix3 *c_nb);
 
 /** covariance += what errors of covariance `force` and `rate` (of means over the time, in body
  *  axes) do by these formulas. */

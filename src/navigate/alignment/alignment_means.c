@@ -13,7 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-imk_status imki_alignment_of_means(imk_vector3 force, imk_vector3 rate, imk_matrix3 *c_nb)
+imk_status imki_alignment_of_means(imk_vector3 force, imk_vector3 rate, imk_geodetic place,
+                                   imk_matrix3 *c_nb)
 {
     const double f = imk_vector3_norm(force);
     if (!(f > 0.0 && isfinite(f)))
@@ -26,11 +27,13 @@ imk_status imki_alignment_of_means(imk_vector3 force, imk_vector3 rate, imk_matr
         return IMK_ERROR_SINGULAR;
     const imk_vector3 east = imk_vector3_scale(across, 1.0 / sine);
     const imk_vector3 north = imk_vector3_cross(east, down);
+    imk_matrix3 hanging;
     for (int j = 0; j < 3; j++) {
-        c_nb->m[0][j] = north.v[j];
-        c_nb->m[1][j] = east.v[j];
-        c_nb->m[2][j] = down.v[j];
+        hanging.m[0][j] = north.v[j];
+        hanging.m[1][j] = east.v[j];
+        hanging.m[2][j] = down.v[j];
     }
+    *c_nb = imk_matrix3_multiply(imk_plumb_axes(place), hanging);
     return IMK_OK;
 }
 
@@ -92,7 +95,7 @@ imk_status imki_alignment_means_finish(const imk_alignment *alignment, imk_align
     const imk_vector3 force = imk_vector3_scale(alignment->velocity, per_time);
     const imk_vector3 rate = imk_vector3_scale(alignment->angle, per_time);
     imk_matrix3 c_nb;
-    if (imki_alignment_of_means(force, rate, &c_nb) != IMK_OK)
+    if (imki_alignment_of_means(force, rate, settings->place, &c_nb) != IMK_OK)
         return imk_error_set(
             error, IMK_ERROR_SINGULAR, "alignment", "",
             "check the samples: force and rate must not be zero and not be parallel");

@@ -130,8 +130,14 @@ void imki_drift_column_at(const imki_drift_column *column, const imki_drift_node
     case IMKI_COLUMN_SKEW:
         carried_column(column, node, raw);
         break;
+    case IMKI_COLUMN_GRAVITY:
+        for (int i = 0; i < 3; i++)
+            raw[3 + i] = -node->axes.m[i][column->axis];
+        break;
     case IMKI_COLUMN_CLOCK: /* the truth goes slower than the samples */
         put_motion(node, raw);
+        break;
+    case IMKI_COLUMN_AID:
         break;
     case IMKI_COLUMN_JITTER: /* F c - dc/dt of what it carries */
         put(node->c_eb, state->angular_acceleration.v, raw);
@@ -176,6 +182,7 @@ void imki_drift_alignment_step(const imki_drift_walk *walk, const imki_drift_pla
     step->h = time;
     step->moments = 1;
     step->repeat = 1;
+    imki_drift_gravity_step(walk->settings, true, step);
     memset(&step->phi, 0, sizeof step->phi);
     for (int i = 0; i < 9; i++) /* nothing is there yet that would move */
         step->phi.m[i][i] = 1.0;

@@ -4,7 +4,8 @@
  * Steps are chosen and looked at one after another, in blocks. Then the steps of a block, the
  * drivers over their lengths, and the sources over all of them are work items, each alone with its
  * own results: nothing depends on who does what when. */
-#include "drift_covariance_internal.h"
+#include "drift_aided_internal.h"
+#include "drift_correlation_internal.h"
 
 #include "base/workspace_internal.h"
 
@@ -18,31 +19,55 @@ typedef struct work {
     imki_drift_walk walk;
     imki_drift_step step[IMKI_DRIFT_BLOCK];
     size_t step_count;
+    imki_drift_loop loop;
+    imki_aided_step aided[IMKI_DRIFT_BLOCK];
     imki_driver_step (*over)[IMKI_DRIFT_SLOTS]; /* [driver] */
     double slot_length[IMKI_DRIFT_SLOTS];       /* h; 0: free */
     int slot_moments[IMKI_DRIFT_SLOTS], slot_age[IMKI_DRIFT_SLOTS];
     int fresh[IMKI_DRIFT_SLOTS], fresh_count; /* slots that drivers have yet to fill */
     imki_drift_node report;                   /* the motion where the results are taken */
     bool reports;                             /* after this block */
-    size_t time;                              /* index of the result */
-    imk_drift_moments *contribution;
-    size_t time_count;
+    bool aids;
+    size_t time; /* index of the result */
+    imk_drift_moments *contribution, *believed;
+    size_t time_count, cross_count;
+    imk_drift_cross *cross;
+    imk_drift_moments *cross_moments; /* [cross][time] */
 } work;
 
 typedef struct layout {
     imk_drift_analysis *analysis;
     work *work;
     imk_drift_source *source;
-    imk_drift_moments *contribution, *total;
+    imk_drift_moments *contribution, *total, *believed, *cross_moments;
+    imk_drift_cross *cross;
+    size_t cross_max;
     double *time;
     imki_drift_part *part;
     imki_drift_element *element;
     imki_drift_column *column;
     imki_drift_driver *driver;
+    double *vector, *covariance;
     imki_driver_step (*over)[IMKI_DRIFT_SLOTS];
     double (*coefficient)[IMKI_DRIFT_COLUMNS][IMKI_DRIFT_MOMENTS][9]; /* [step] */
+    size_t states;
+    imki_loop_memory loop;
+    double *decay, *update;
+    double (*enter)[IMKI_DRIFT_COLUMNS][IMKI_UPDATE_ROWS];
     imki_parts memory;
 } layout;
+
+static void lay_out_loop(layout *l, const imk_drift_settings *settings)
+{
+    const size_t n = l->states, updates = IMKI_DRIFT_BLOCK * settings->aid_count;
+    if (settings->aid_count == 0)
+        return;
+    l->loop.filter = imki_take(&l->memory, l->loop.filter_size);
+    l->loop.scratch = imki_take(&l->memory, imki_drift_filter_scratch());
+    l->decay = imki_take(&l->memory, IMKI_DRIFT_BLOCK * n * sizeof *l->decay);
+    l->update = imki_take(&l->memory, updates * 2 * IMKI_UPDATE_ROWS * n * sizeof *l->update);
+    l->enter = imki_take(&l->memory, updates * sizeof *l->enter);
+}
 
 static layout lay_out(const imk_model *model, const imk_drift_settings *settings, void *memory)
 {
@@ -50,11 +75,16 @@ static layout lay_out(const imk_model *model, const imk_drift_settings *settings
     imki_drift_plan count = {.source_count = 0};
     imki_drift_sources(&count, model, settings, (imk_geodetic){0.0, 0.0, 0.0});
     const size_t sources = count.source_count, times = settings->time_count;
-    const size_t drivers = imki_drift_drivers_max(model);
+    const size_t drivers = imki_drift_drivers_max(model, settings);
+    const size_t n = l.states = imki_drift_filter_states(model, settings, &l.loop.filter_size);
     l.analysis = imki_take(&l.memory, sizeof *l.analysis);
     l.source = imki_take(&l.memory, sources * sizeof *l.source);
     l.contribution = imki_take(&l.memory, sources * times * sizeof *l.contribution);
+    l.cross_max = imki_drift_cross_max(model, settings);
+    l.cross = imki_take(&l.memory, l.cross_max * sizeof *l.cross);
+    l.cross_moments = imki_take(&l.memory, l.cross_max * times * sizeof *l.cross_moments);
     l.total = imki_take(&l.memory, times * sizeof *l.total);
+    l.believed = imki_take(&l.memory, (settings->aid_count > 0 ? times : 0) * sizeof *l.believed);
     l.time = imki_take(&l.memory, times * sizeof *l.time);
     l.work = imki_take(&l.memory, sizeof *l.work);
     l.part = imki_take(&l.memory, sources * sizeof *l.part);
@@ -63,7 +93,10 @@ static layout lay_out(const imk_model *model, const imk_drift_settings *settings
     l.column = imki_take(&l.memory, IMKI_DRIFT_COLUMNS * sizeof *l.column);
     l.driver = imki_take(&l.memory, drivers * sizeof *l.driver);
     l.over = imki_take(&l.memory, drivers * sizeof *l.over);
+    l.vector = imki_take(&l.memory, 3 * (count.element_count + 1) * n * sizeof *l.vector);
+    l.covariance = imki_take(&l.memory, sources * n * n * sizeof *l.covariance);
     l.coefficient = imki_take(&l.memory, IMKI_DRIFT_BLOCK * sizeof *l.coefficient);
+    lay_out_loop(&l, settings);
     return l;
 }
 
@@ -80,6 +113,8 @@ static void fill_step(void *context, size_t item)
 {
     work *w = context;
     imki_drift_fill_step(&w->walk, &w->plan, &w->step[item]);
+    if (w->step[item].aided)
+        imki_loop_fill(&w->loop, &w->plan, &w->walk, &w->step[item]);
 }
 
 static void fill_driver(void *context, size_t item)
@@ -141,6 +176,9 @@ static void run_block(work *w, imk_work source_work, const imk_executor *executo
     if (w->fresh_count > 0)
         imk_execute(executor, w->plan.driver_count, fill_driver, w);
     imk_execute(executor, w->plan.source_count, source_work, w);
+    for (size_t k = 0; k < w->cross_count && w->reports; k++)
+        imki_drift_cross_at(&w->plan, &w->cross[k], &w->report,
+                            &w->cross_moments[k * w->time_count + w->time]);
     w->fresh_count = 0;
     w->step_count = 0;
 }
@@ -162,14 +200,23 @@ static void advance(work *w, double time, double goal, const imk_executor *execu
 {
     while (time < goal) {
         while (time < goal && w->step_count < IMKI_DRIFT_BLOCK) {
-            imki_drift_step *step = &w->step[w->step_count++];
-            time = imki_drift_next_step(&w->walk, time, goal, step);
+            const size_t number = w->step_count++;
+            imki_drift_step *step = &w->step[number];
+            const double limit = w->aids ? imki_loop_limit(&w->loop, time, goal) : goal;
+            time = imki_drift_next_step(&w->walk, time, limit, step);
             step->slot = slot_of(w, step->h, step->moments);
+            step->aided = w->aids ? &w->aided[number] : NULL;
+            if (w->aids)
+                imki_loop_take(&w->loop, step, time, !(time < limit));
         }
         w->reports = !(time < goal);
-        if (w->reports)
+        if (w->reports) {
             imki_drift_node_at(&w->walk, w->walk.motion.start + (w->walk.rests ? 0.0 : goal),
                                &w->report);
+            imki_drift_level(w->walk.earth, w->walk.settings->attitude_errors, &w->report);
+            if (w->aids)
+                imki_loop_believed(&w->loop, &w->report, &w->believed[w->time]);
+        }
         imk_execute(executor, w->step_count, fill_step, w);
         run_block(w, move_source, executor);
     }
@@ -184,12 +231,16 @@ static void start_work(work *w, const layout *l, const imk_model *model,
     memset(w, 0, sizeof *w);
     w->plan = (imki_drift_plan){.source = l->source,
                                 .part = l->part,
+                                .states = l->states,
+                                .vector = l->vector,
+                                .covariance = l->covariance,
                                 .element = l->element,
                                 .column = l->column,
                                 .driver = l->driver,
                                 .omitted = l->analysis->omitted};
     w->over = l->over;
     w->contribution = l->contribution;
+    w->believed = l->believed;
     w->time_count = settings->time_count;
     for (int i = 0; i < IMKI_DRIFT_SLOTS; i++)
         w->slot_length[i] = -1.0;
@@ -203,8 +254,42 @@ static void start_work(work *w, const layout *l, const imk_model *model,
     imk_motion_state state;
     imk_trajectory_state(&w->walk.motion.trajectory, w->walk.motion.start, &state);
     imki_drift_sources(&w->plan, model, settings, state.place);
+    w->cross = l->cross;
+    w->cross_moments = l->cross_moments;
+    w->cross_count = imki_drift_cross_pairs(&w->plan, l->cross_max, l->cross);
+    for (size_t k = 0; k < w->cross_count; k++)
+        l->cross[k].moments = &l->cross_moments[k * w->time_count];
     for (size_t i = 0; i < w->plan.column_count; i++)
         w->walk.needs_slope = w->walk.needs_slope || l->column[i].kind == IMKI_COLUMN_JITTER;
+}
+
+/* The filter, and where its gains are kept. */
+static imk_status start_loop(work *w, const layout *l, const imk_model *model,
+                             const imk_drift_settings *settings, imk_error *error)
+{
+    w->aids = settings->aid_count > 0;
+    if (!w->aids)
+        return IMK_OK;
+    const imk_status status =
+        imki_loop_start(&w->loop, model, settings, &w->walk, &w->plan, &l->loop, error);
+    const size_t n = w->loop.states, room = IMKI_UPDATE_ROWS * l->states;
+    w->plan.states = n > 0 ? n : w->plan.states;
+    if (status != IMK_OK)
+        return status;
+    for (size_t i = 0; i < IMKI_DRIFT_BLOCK; i++) {
+        imki_aided_step *aided = &w->aided[i];
+        *aided = (imki_aided_step){.states = n,
+                                   .parts = {w->loop.filter->parts[0], w->loop.filter->parts[1]},
+                                   .rate = settings->rate,
+                                   .decay = l->decay + i * l->states};
+        for (size_t k = 0; k < settings->aid_count; k++) {
+            const size_t number = i * settings->aid_count + k;
+            aided->update[k].h = l->update + 2 * number * room;
+            aided->update[k].gain = aided->update[k].h + room;
+            aided->update[k].enter = l->enter[number];
+        }
+    }
+    return IMK_OK;
 }
 
 /* A range that the motion leaves, or comes near to, cuts the readings. */
@@ -222,19 +307,27 @@ static void omit_ranges(work *w, const imk_model *model)
     }
 }
 
+static void add_moments(imk_drift_moments *total, const imk_drift_moments *part)
+{
+    for (int i = 0; i < 9; i++) {
+        total->mean[i] += part->mean[i];
+        for (int j = 0; j < 9; j++)
+            total->covariance[i][j] += part->covariance[i][j];
+    }
+}
+
 static void add_up(const layout *l, size_t sources, size_t times)
 {
     for (size_t time = 0; time < times; time++) {
         imk_drift_moments *total = &l->total[time];
         memset(total, 0, sizeof *total);
-        for (size_t source = 0; source < sources; source++) {
-            const imk_drift_moments *part = &l->contribution[source * times + time];
-            for (int i = 0; i < 9; i++) {
-                total->mean[i] += part->mean[i];
-                for (int j = 0; j < 9; j++)
-                    total->covariance[i][j] += part->covariance[i][j];
-            }
-        }
+        for (size_t source = 0; source < sources; source++)
+            add_moments(total, &l->contribution[source * times + time]);
+        for (size_t k = 0; k < l->work->cross_count; k++)
+            add_moments(total, &l->cross_moments[k * times + time]);
+        for (int i = 0; i < 9 && l->work->cross_count > 0; i++) /* rounding */
+            if (!(total->covariance[i][i] > 0.0))
+                total->covariance[i][i] = 0.0;
     }
 }
 
@@ -243,7 +336,7 @@ imk_status imki_drift_covariance_on(imki_drift_earth earth, const imk_model *mod
                                     const imk_executor *executor, imk_drift_analysis **analysis,
                                     imk_error *error)
 {
-    const imk_status status = imk_drift_validate(model, settings, error);
+    imk_status status = imk_drift_validate(model, settings, error);
     if (status != IMK_OK)
         return status;
     const layout l = lay_out(model, settings, memory);
@@ -254,6 +347,9 @@ imk_status imki_drift_covariance_on(imki_drift_earth earth, const imk_model *mod
                              "imk_drift_covariance_size() bytes");
     memset(l.analysis, 0, sizeof *l.analysis);
     start_work(l.work, &l, model, settings, earth);
+    status = start_loop(l.work, &l, model, settings, error);
+    if (status != IMK_OK)
+        return status;
     begin(l.work, executor);
     double time = 0.0;
     for (size_t i = 0; i < settings->time_count; i++) {
@@ -270,6 +366,9 @@ imk_status imki_drift_covariance_on(imki_drift_earth earth, const imk_model *mod
     l.analysis->source = l.source;
     l.analysis->contribution = l.contribution;
     l.analysis->total = l.total;
+    l.analysis->cross_count = l.work->cross_count;
+    l.analysis->cross = l.cross;
+    l.analysis->believed = settings->aid_count > 0 ? l.believed : NULL;
     l.analysis->time = l.time;
     l.analysis->omitted_count = l.work->plan.omitted_count;
     *analysis = l.analysis;

@@ -17,10 +17,11 @@
 #include "noise/noise_terms_internal.h"
 
 enum {
-    IMKI_DRIFT_MOMENTS = 6,  /* powers of time in a column over a step */
-    IMKI_DRIFT_SLOTS = 32,   /* lengths of steps that drivers remember */
-    IMKI_DRIFT_BLOCK = 16,   /* steps made ready at a time */
-    IMKI_DRIFT_COLUMNS = 128 /* 57 of gyros, 48 of accelerometers, 3 of the clock, at most */
+    IMKI_DRIFT_MOMENTS = 6, /* powers of time in a column over a step */
+    IMKI_DRIFT_SLOTS = 32,  /* lengths of steps that drivers remember */
+    IMKI_DRIFT_BLOCK = 16,  /* steps made ready at a time */
+    /* At most 57 of gyros, 48 of accelerometers, 3 of the clock, 2 of gravity, 72 of aids. */
+    IMKI_DRIFT_COLUMNS = 192
 };
 
 typedef struct imki_matrix9 {
@@ -89,7 +90,9 @@ typedef enum imki_column_kind {
     IMKI_COLUMN_DELAY,    /* the derivative of -u: a filter's delay */
     IMKI_COLUMN_SKEW,     /* delay of all accelerometers */
     IMKI_COLUMN_CLOCK,    /* rate error of the sample clock */
-    IMKI_COLUMN_JITTER    /* shift of samples in time; its last one stays, like what is rounded */
+    IMKI_COLUMN_GRAVITY,  /* less along north or east: its driver is that of the step */
+    IMKI_COLUMN_JITTER,   /* shift of samples in time; its last one stays, like what is rounded */
+    IMKI_COLUMN_AID /* enters by updates alone: error `part` of aid `sensor`, an imki_aid_error */
 } imki_column_kind;
 
 typedef struct imki_drift_column {
@@ -112,9 +115,10 @@ typedef struct imki_drift_element {
     double size;     /* of noise: its variance */
     double state[2]; /* of the driver, when not noise; of rounding: 1 sigma of what is carried
                       */
-    double x[9];     /* what it has done, when not noise */
+    double *x;       /* what it has done, when not noise */
     double covariance[2][2]; /* of the driver's states, when noise */
-    double cross[2][9];      /* of these with x */
+    double *cross[2];        /* of these with x */
+    int correlated;          /* place in the model's correlation, from 1; 0: independent */
     /* Of a stochastic term: its row and its process, for who takes it sample by sample; else NULL
      */
     const imki_noise_term *term;
@@ -122,18 +126,22 @@ typedef struct imki_drift_element {
 } imki_drift_element;
 
 typedef struct imki_drift_part {
-    size_t first, count;     /* elements */
-    imki_matrix9 covariance; /* what noise elements have done */
+    size_t first, count; /* elements */
+    double *covariance;  /* what noise elements have done; states x states */
 } imki_drift_part;
 
 /* All of it. With `element` NULL sources and elements are counted only. */
 typedef struct imki_drift_plan {
     size_t source_count, element_count, column_count, driver_count;
+    size_t states;      /* of x: nine, and of an aided navigator its estimates */
+    double *vector;     /* of the elements: x and cross of each */
+    double *covariance; /* of the sources */
     imk_drift_source *source;
     imki_drift_part *part;
     imki_drift_element *element;
     imki_drift_column *column;
     imki_drift_driver *driver;
+    const imk_correlation *correlation; /* of calibrated values; NULL: they are independent */
     size_t omitted_count;
     const char **omitted;
 } imki_drift_plan;
@@ -141,6 +149,8 @@ typedef struct imki_drift_plan {
 /* drift_plan.c */
 void imki_drift_add_source(imki_drift_plan *plan, const char *first, const char *second,
                            const char *third, const char *text); /* first.secondthird */
+/* Of a column that is there, or is added. */
+int imki_drift_column_number(imki_drift_plan *plan, const imki_drift_column *column);
 /* The next element of the source added last; NULL when only counting. */
 imki_drift_element *imki_drift_add_element(imki_drift_plan *plan, imki_element_use use,
                                            const imki_drift_column *column,
@@ -164,7 +174,7 @@ void imki_drift_noise_sources(imki_drift_plan *plan, const imk_triad *triad, int
                               const imk_drift_settings *settings);
 
 /* Drivers at most. */
-size_t imki_drift_drivers_max(const imk_model *model);
+size_t imki_drift_drivers_max(const imk_model *model, const imk_drift_settings *settings);
 /* @param start  where navigation starts; not needed for counting */
 void imki_drift_sources(imki_drift_plan *plan, const imk_model *model,
                         const imk_drift_settings *settings, imk_geodetic start);
@@ -181,8 +191,9 @@ typedef struct imki_drift_node {
     imki_matrix9 keep;        /* x <- keep x: what a slaved vertical leaves; without it unity */
     imki_matrix9 full;        /* x with the vertical velocity that belongs to it */
     bool slaved;
-    double climb[3]; /* this velocity, upward, from dr */
-    imki_matrix9 f;  /* F */
+    double climb[3];   /* this velocity, upward, from dr */
+    imki_matrix9 f;    /* F */
+    imk_matrix3 level; /* what dr, in `axes`, turns the displayed level by; 0: psi is stated */
 } imki_drift_node;
 
 typedef struct imki_drift_walk {
@@ -198,9 +209,11 @@ typedef struct imki_drift_step {
     double h;
     int moments, slot;
     size_t repeat;
-    imki_drift_node node[5]; /* at its quarters; at rest the first alone */
+    struct imki_aided_step *aided; /* drift_aided_internal.h; NULL: no aids */
+    imki_drift_node node[5];       /* at its quarters; at rest the first alone */
     imki_matrix9 phi;
     double (*column)[IMKI_DRIFT_MOMENTS][9]; /* [plan column]: coefficients of u^k/k! */
+    imki_driver_step gravity; /* of the deflection of gravity, which depends on the speed */
 } imki_drift_step;
 
 void imki_drift_node_at(imki_drift_walk *walk, double time, imki_drift_node *node);
@@ -225,6 +238,21 @@ void imki_drift_fill_step(const imki_drift_walk *walk, const imki_drift_plan *pl
 void imki_drift_alignment_step(const imki_drift_walk *walk, const imki_drift_plan *plan,
                                imki_drift_step *step);
 
+/* ---- drift_gravity.c ---- */
+
+/* What gravity's deflection decays with in time [1/s]. */
+double imki_gravity_decay(const imk_drift_settings *settings, const imk_motion_state *state);
+void imki_drift_gravity_source(imki_drift_plan *plan, const imk_drift_settings *settings);
+/* step->gravity, of a step whose nodes are there; with `rests` the unit stands. */
+void imki_drift_gravity_step(const imk_drift_settings *settings, bool rests, imki_drift_step *step);
+
+/* ---- drift_axes.c ---- */
+
+/* Set node->level. */
+void imki_drift_level(imki_drift_earth earth, imk_attitude_errors stated, imki_drift_node *node);
+/* T: the nine errors that are stated from x. */
+void imki_drift_result_axes(const imki_drift_node *node, imki_matrix9 *t);
+
 /* ---- drift_propagate.c ---- */
 
 /* What a source does before the first step: of self-alignment, a step that ends at the node, or
@@ -235,6 +263,11 @@ void imki_drift_begin(const imki_drift_plan *plan, imki_drift_part *part,
 /* Move a source over a step, repeat times. @param over  [driver][slot] */
 void imki_drift_propagate(const imki_drift_plan *plan, imki_drift_part *part,
                           const imki_drift_step *step, imki_driver_step (*over)[IMKI_DRIFT_SLOTS]);
+/* x of an element that is not noise, with what it carries. */
+void imki_drift_element_at(const imki_drift_plan *plan, const imki_drift_element *element,
+                           const imki_drift_node *node, double x[9]);
+/* p <- t p t^T */
+void imki_drift_turn_covariance(double *p, size_t n, const imki_matrix9 *phi);
 /* Mean and covariance of a source at an instant, in north-east-down axes. */
 void imki_drift_moments_at(const imki_drift_plan *plan, const imki_drift_part *part,
                            const imki_drift_node *node, imk_drift_moments *moments);

@@ -7,8 +7,8 @@
  *     v dt coth(dt/2T)   for   2 v T
  *
  * of the process, and those of a sinusoid of frequency f add up to x/sin x, x = pi f dt, of what
- * its integral is. Flicker noise is the sum of the stages that the simulator makes (noise.h), each
- * of the variance (ln 4/pi) B^2, which is also that of its flat Allan variance. */
+ * its integral is. Flicker noise is the sum of the stages that the simulator makes (noise.h), whose
+ * samples have the density of their processes. */
 #include "drift_covariance_internal.h"
 
 #include "imukit/distort.h"
@@ -87,7 +87,8 @@ static void add_process(imki_drift_plan *plan, const imki_noise_term *term, cons
         add_resonance(plan, p, column, dt);
     } else {
         const bool first_order = p->kind == IMKI_PROCESS_FIRST_ORDER;
-        const double share = p->share * (first_order && !p->held ? sampled_share(p->time, dt) : 1);
+        const double share =
+            p->share * (first_order && !p->matched ? sampled_share(p->time, dt) : 1);
         const imki_drift_driver driver = first_order ? imki_driver_gauss_markov(p->time)
                                          : p->kind == IMKI_PROCESS_WALK ? imki_driver_walk()
                                                                         : imki_driver_white();

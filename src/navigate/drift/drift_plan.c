@@ -19,7 +19,7 @@ static bool same_column(const imki_drift_column *a, const imki_drift_column *b)
            same_axis(a->output, b->output);
 }
 
-static int column_number(imki_drift_plan *plan, const imki_drift_column *column)
+int imki_drift_column_number(imki_drift_plan *plan, const imki_drift_column *column)
 {
     for (size_t i = 0; i < plan->column_count; i++)
         if (same_column(&plan->column[i], column))
@@ -50,8 +50,10 @@ void imki_drift_add_source(imki_drift_plan *plan, const char *first, const char 
     imki_append_text(source->name, sizeof source->name, second);
     imki_append_text(source->name, sizeof source->name, third);
     source->text = text;
-    memset(&plan->part[i], 0, sizeof plan->part[i]);
-    plan->part[i].first = plan->element_count;
+    const size_t n = plan->states;
+    plan->part[i] =
+        (imki_drift_part){.first = plan->element_count, .covariance = plan->covariance + i * n * n};
+    memset(plan->part[i].covariance, 0, n * n * sizeof *plan->covariance);
 }
 
 /* The next element of the source added last. NULL when only counting. */
@@ -65,8 +67,12 @@ imki_drift_element *imki_drift_add_element(imki_drift_plan *plan, imki_element_u
     imki_drift_element *element = &plan->element[i];
     memset(element, 0, sizeof *element);
     element->use = use;
-    element->column = column_number(plan, column);
+    element->column = imki_drift_column_number(plan, column);
     element->driver = driver_number(plan, driver);
+    element->x = plan->vector + 3 * i * plan->states;
+    for (size_t state = 0; state < 2; state++)
+        element->cross[state] = element->x + (1 + state) * plan->states;
+    memset(element->x, 0, 3 * plan->states * sizeof *element->x);
     plan->part[plan->source_count - 1].count++;
     return element;
 }

@@ -7,8 +7,10 @@
  *                S <- (phi S + B Z) p^T + sum a_k c_k^T,   Z <- p Z p^T + Q
  *
  * P being the covariance of x, S that of x with the driver's states z, and Z that of these. A
- * source adds up its elements, which are independent: one P for all, an S and Z for each. */
-#include "drift_covariance_internal.h"
+ * source adds up its elements, which are independent: one P for all, an S and Z for each. Behind
+ * these nine, an aided navigator has more states: drift_feedback.c. */
+#include "drift_aided_internal.h"
+#include "drift_correlation_internal.h"
 
 #include "imukit/distort.h"
 
@@ -33,6 +35,8 @@ static void move_constant(imki_drift_element *element, const imki_drift_step *st
         for (int i = 0; i < 9; i++)
             x[i] += a[k][i] * integral;
     }
+    if (step->aided)
+        imki_feed_vector(step->aided, element->x, x);
     memcpy(element->x, x, sizeof x);
     for (int i = 0; i < 2; i++)
         element->state[i] = driver->phi[i][0] * z[0] + driver->phi[i][1] * z[1];
@@ -40,13 +44,14 @@ static void move_constant(imki_drift_element *element, const imki_drift_step *st
 
 /* ---- noise ---- */
 
-static void move_covariance(imki_matrix9 *p, const imki_matrix9 *phi)
+/* Of p, n x n, the first nine rows and columns: so all of them here. */
+void imki_drift_turn_covariance(double *p, size_t n, const imki_matrix9 *phi)
 {
     imki_matrix9 half = {{{0.0}}}, turned, whole = {{{0.0}}};
     for (int i = 0; i < 9; i++)
-        for (int k = 0; k < 9; k++)
-            for (int j = 0; j < 9; j++)
-                half.m[i][j] += phi->m[i][k] * p->m[k][j];
+        for (size_t k = 0; k < 9; k++)
+            for (size_t j = 0; j < 9; j++)
+                half.m[i][j] += phi->m[i][k] * p[k * n + j];
     for (int i = 0; i < 9; i++)
         for (int j = 0; j < 9; j++)
             turned.m[i][j] = phi->m[j][i];
@@ -54,11 +59,12 @@ static void move_covariance(imki_matrix9 *p, const imki_matrix9 *phi)
         for (int k = 0; k < 9; k++)
             for (int j = 0; j < 9; j++)
                 whole.m[i][j] += half.m[i][k] * turned.m[k][j];
-    *p = whole;
+    for (size_t i = 0; i < 9; i++)
+        memcpy(p + i * n, whole.m[i], sizeof whole.m[i]);
 }
 
 /* p += sum a_k a_l^T weight_kl, symmetric */
-static void add_columns(imki_matrix9 *p, double (*a)[9], int moments,
+static void add_columns(double *p, size_t n, double (*a)[9], int moments,
                         double weight[IMKI_DRIFT_MOMENTS][IMKI_DRIFT_MOMENTS])
 {
     for (int k = 0; k < moments; k++) {
@@ -66,23 +72,23 @@ static void add_columns(imki_matrix9 *p, double (*a)[9], int moments,
         for (int l = 0; l < moments; l++)
             for (int j = 0; j < 9; j++)
                 b[j] += weight[k][l] * a[l][j];
-        for (int i = 0; i < 9; i++)
-            for (int j = 0; j < 9; j++)
-                p->m[i][j] += a[k][i] * b[j];
+        for (size_t i = 0; i < 9; i++)
+            for (size_t j = 0; j < 9; j++)
+                p[i * n + j] += a[k][i] * b[j];
     }
 }
 
 /* p += a b^T + b a^T */
-static void add_both(imki_matrix9 *p, const double a[9], const double b[9])
+static void add_both(double *p, size_t n, const double a[9], const double b[9])
 {
-    for (int i = 0; i < 9; i++)
-        for (int j = 0; j < 9; j++)
-            p->m[i][j] += a[i] * b[j] + b[i] * a[j];
+    for (size_t i = 0; i < 9; i++)
+        for (size_t j = 0; j < 9; j++)
+            p[i * n + j] += a[i] * b[j] + b[i] * a[j];
 }
 
 /* What the states of an element's driver do to P and S, of which phi P phi^T is done, and Z. */
-static void move_states(imki_drift_element *element, imki_matrix9 *p, const imki_drift_step *step,
-                        const imki_driver_step *driver, int states)
+static void move_states(imki_drift_element *element, double *p, size_t n,
+                        const imki_drift_step *step, const imki_driver_step *driver, int states)
 {
     double(*a)[9] = step->column[element->column];
     double moved[2][9] = {{0.0}}, b[2][9] = {{0.0}}, bz[2][9];
@@ -91,6 +97,8 @@ static void move_states(imki_drift_element *element, imki_matrix9 *p, const imki
         for (int i = 0; i < 9; i++)
             for (int j = 0; j < 9; j++)
                 moved[s][i] += step->phi.m[i][j] * element->cross[s][j];
+        if (step->aided)
+            imki_feed_vector(step->aided, element->cross[s], moved[s]);
         for (int k = 0; k < step->moments; k++)
             for (int i = 0; i < 9; i++)
                 b[s][i] += a[k][i] * driver->gain[k][s];
@@ -102,8 +110,10 @@ static void move_states(imki_drift_element *element, imki_matrix9 *p, const imki
             half[i] = moved[s][i] + 0.5 * bz[s][i];
             moved[s][i] += bz[s][i];
         }
-        add_both(p, half, b[s]);
+        add_both(p, n, half, b[s]);
     }
+    if (step->aided)
+        imki_feed_states(n, element, states, b, driver, p);
     double next[2][2];
     for (int s = 0; s < states; s++) {
         for (int i = 0; i < 9; i++) {
@@ -138,18 +148,22 @@ static void move_elements(const imki_drift_plan *plan, imki_drift_part *part,
     double weight[IMKI_DRIFT_MOMENTS][IMKI_DRIFT_MOMENTS] = {{0.0}};
     for (size_t i = part->first; i < part->first + part->count; i++) {
         imki_drift_element *element = &plan->element[i];
-        const imki_driver_step *driver = &over[element->driver][step->slot];
+        const bool of_step = plan->column[element->column].kind == IMKI_COLUMN_GRAVITY;
+        const imki_driver_step *driver =
+            of_step ? &step->gravity : &over[element->driver][step->slot];
         if (!is_noise(element)) {
             move_constant(element, step, driver);
             continue;
         }
-        move_states(element, &part->covariance, step, driver, plan->driver[element->driver].states);
+        move_states(element, part->covariance, plan->states, step, driver,
+                    plan->driver[element->driver].states);
         for (int k = 0; k < step->moments; k++)
             for (int l = 0; l < step->moments; l++)
                 weight[k][l] += element->size * driver->moment_noise[k][l];
         if (i + 1 < part->first + part->count && element[1].column == element->column)
             continue;
-        add_columns(&part->covariance, step->column[element->column], step->moments, weight);
+        add_columns(part->covariance, plan->states, step->column[element->column], step->moments,
+                    weight);
         memset(weight, 0, sizeof weight);
     }
 }
@@ -159,17 +173,21 @@ void imki_drift_propagate(const imki_drift_plan *plan, imki_drift_part *part,
 {
     const bool noisy = part->count > 0 && is_noise(&plan->element[part->first]);
     for (size_t repeat = 0; repeat < step->repeat; repeat++) {
-        if (noisy)
-            move_covariance(&part->covariance, &step->phi);
+        if (noisy && step->aided)
+            imki_feed_covariance(plan->states, step, part->covariance);
+        else if (noisy)
+            imki_drift_turn_covariance(part->covariance, plan->states, &step->phi);
         move_elements(plan, part, step, over);
     }
+    if (step->aided)
+        imki_drift_update_part(plan, part, step->aided);
 }
 
-static void add_square(imki_matrix9 *p, double factor, const double x[9])
+static void add_square(double *p, size_t n, double factor, const double x[9])
 {
-    for (int i = 0; i < 9; i++)
-        for (int j = 0; j < 9; j++)
-            p->m[i][j] += factor * (x[i] * x[j]);
+    for (size_t i = 0; i < 9; i++)
+        for (size_t j = 0; j < 9; j++)
+            p[i * n + j] += factor * (x[i] * x[j]);
 }
 
 /* Readings have the differences e_k - e_(k-1) of what is carried. Navigation sees x - g e, which is
@@ -188,8 +206,9 @@ static void rounding_at_start(const imki_drift_plan *plan, imki_drift_part *part
             memcpy(a, alignment->column[element->column][0], sizeof a);
         for (int j = 0; j < 9; j++)
             g[j] = a[j] - g[j];
-        add_square(&part->covariance, element->state[0] * element->state[0], g);
-        add_square(&part->covariance, element->state[0] * element->state[0], a);
+        const double variance = element->state[0] * element->state[0];
+        add_square(part->covariance, plan->states, variance, g);
+        add_square(part->covariance, plan->states, variance, a);
     }
 }
 
@@ -227,48 +246,35 @@ void imki_drift_begin(const imki_drift_plan *plan, imki_drift_part *part,
 
 /* ---- results ---- */
 
-/* Rows and columns of the result from those of x: position, velocity, attitude. */
-static const int place[3] = {6, 3, 0};
-
-/* T: north-east-down components of the errors, in the order of the result. What a slaved vertical
- * makes zero is so to the bit. */
-static void result_axes(const imki_drift_node *node, imki_matrix9 *t)
+void imki_drift_element_at(const imki_drift_plan *plan, const imki_drift_element *element,
+                           const imki_drift_node *node, double x[9])
 {
-    memset(t, 0, sizeof *t);
-    for (int block = 0; block < 3; block++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 9; j++)
-                for (int k = 0; k < 3; k++)
-                    t->m[3 * block + i][j] +=
-                        node->axes.m[k][i] * node->full.m[place[block] + k][j];
-    if (!node->slaved)
-        return;
-    for (int j = 0; j < 9; j++) {
-        t->m[2][j] = 0.0;
-        t->m[5][j] = j >= place[0] ? -node->climb[j - place[0]] : 0.0;
-    }
+    imki_drift_carried_at(&plan->column[element->column], node, x);
+    for (int j = 0; j < 9; j++)
+        x[j] = element->x[j] + x[j] * element->state[0]; /* of rounding there is no x */
 }
 
 void imki_drift_moments_at(const imki_drift_plan *plan, const imki_drift_part *part,
                            const imki_drift_node *node, imk_drift_moments *moments)
 {
-    imki_matrix9 t, p = part->covariance;
+    imki_matrix9 t, p;
     double mean[9] = {0.0}, c[9];
+    for (size_t i = 0; i < 9; i++)
+        memcpy(p.m[i], part->covariance + i * plan->states, sizeof p.m[i]);
     for (size_t i = part->first; i < part->first + part->count; i++) {
         const imki_drift_element *element = &plan->element[i];
         if (element->use == IMKI_ELEMENT_NOISE)
             continue;
-        imki_drift_carried_at(&plan->column[element->column], node, c);
-        for (int j = 0; j < 9; j++)
-            c[j] = element->x[j] + c[j] * element->state[0]; /* of rounding there is no x */
+        imki_drift_element_at(plan, element, node, c);
         if (element->use == IMKI_ELEMENT_MEAN)
             for (int j = 0; j < 9; j++)
                 mean[j] += c[j];
         else
-            add_square(&p, 1.0, c);
+            add_square(&p.m[0][0], 9, 1.0, c);
     }
-    result_axes(node, &t);
-    move_covariance(&p, &t);
+    imki_drift_add_correlated(plan, part, part, node, &p);
+    imki_drift_result_axes(node, &t);
+    imki_drift_turn_covariance(&p.m[0][0], 9, &t);
     for (int i = 0; i < 9; i++) {
         moments->mean[i] = 0.0;
         for (int j = 0; j < 9; j++)

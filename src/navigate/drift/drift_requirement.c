@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The inverse question: how good must each source of error become for a figure to meet a goal?
  *
- * A source made better by the factor c has the mean c m and the covariance c^2 P.
+ * A source made better by the factor c has the mean c m and the covariance c^2 P; what sources with
+ * the factors c and d have in common is c d times as large.
  *
  * The least work is counted in factors: to halve one error is as much work as to halve another, so
  * that the sum of ln(1/c) is to be least. For a mean square, the sum of c^2 v over the sources, the
@@ -25,6 +26,13 @@ static void add(imk_drift_moments *sum, const imk_drift_moments *m, double facto
         for (int j = 0; j < IMK_DRIFT_STATES; j++)
             sum->covariance[i][j] += factor * factor * m->covariance[i][j];
     }
+}
+
+static void add_cross(imk_drift_moments *sum, const imk_drift_moments *m, double factor)
+{
+    for (int i = 0; i < IMK_DRIFT_STATES; i++)
+        for (int j = 0; j < IMK_DRIFT_STATES; j++)
+            sum->covariance[i][j] += factor * m->covariance[i][j];
 }
 
 static double figure_of(const imk_drift_moments *m, imk_drift_requirement requirement)
@@ -59,38 +67,48 @@ static const imk_drift_moments *source_of(const question *q, size_t source)
 
 /* ---- one source alone ---- */
 
-static bool meets_with(const question *q, const imk_drift_moments *rest,
-                       const imk_drift_moments *one, double factor)
+/* What is left without it, with what it has in common with that, and it. */
+typedef struct divided {
+    imk_drift_moments rest, common;
+    const imk_drift_moments *one;
+} divided;
+
+static bool meets_with(const question *q, const divided *d, double factor)
 {
-    imk_drift_moments sum = *rest;
-    add(&sum, one, factor);
+    imk_drift_moments sum = d->rest;
+    add(&sum, d->one, factor);
+    add_cross(&sum, &d->common, factor);
     return meets(&sum, q->requirement, q->goal);
 }
 
 /* Largest factor of one source with which the goal is met. */
 static double alone(const question *q, size_t source)
 {
-    const imk_drift_moments *one = source_of(q, source);
-    imk_drift_moments rest = {{0}, {{0}}};
+    divided d = {.one = source_of(q, source)};
     for (size_t k = 0; k < q->analysis->source_count; k++)
         if (k != source)
-            add(&rest, source_of(q, k), 1.0);
+            add(&d.rest, source_of(q, k), 1.0);
+    for (size_t k = 0; k < q->analysis->cross_count; k++) {
+        const imk_drift_cross *cross = &q->analysis->cross[k];
+        const bool common = cross->first == source || cross->second == source;
+        add_cross(common ? &d.common : &d.rest, &cross->moments[q->time], 1.0);
+    }
     double good = 0.0, bad = 1.0;
-    if (meets_with(q, &rest, one, 1.0)) {
+    if (meets_with(q, &d, 1.0)) {
         good = 1.0;
         bad = 2.0;
-        while (bad < 1e12 && meets_with(q, &rest, one, bad)) {
+        while (bad < 1e12 && meets_with(q, &d, bad)) {
             good = bad;
             bad *= 2.0;
         }
         if (bad >= 1e12)
             return (double)INFINITY; /* it does not matter for this figure */
-    } else if (!meets_with(q, &rest, one, 0.0)) {
+    } else if (!meets_with(q, &d, 0.0)) {
         return 0.0;
     }
     for (int i = 0; i < BISECTIONS && bad - good > 1e-12 * bad; i++) {
         const double middle = 0.5 * (good + bad);
-        if (meets_with(q, &rest, one, middle))
+        if (meets_with(q, &d, middle))
             good = middle;
         else
             bad = middle;
@@ -110,6 +128,12 @@ static bool meets_under(const question *q, const double *figure, double ceiling)
     imk_drift_moments sum = {{0}, {{0}}};
     for (size_t k = 0; k < q->analysis->source_count; k++)
         add(&sum, source_of(q, k), under_ceiling(figure[k], ceiling));
+    for (size_t k = 0; k < q->analysis->cross_count; k++) {
+        const imk_drift_cross *cross = &q->analysis->cross[k];
+        add_cross(&sum, &cross->moments[q->time],
+                  under_ceiling(figure[cross->first], ceiling) *
+                      under_ceiling(figure[cross->second], ceiling));
+    }
     return meets(&sum, q->requirement, q->goal);
 }
 

@@ -8,8 +8,10 @@
  * axis 0-7 of the gyros, 8-15 of the accelerometers, 0 for the timing. The numbers of the
  * parameters (imki_term.draw) are fixed for ever, so that a new one changes no draw of an old one;
  * components are counted along a row of the model (x, y, z), a scalar being component 0. */
+#include "drift_correlation_internal.h"
 #include "drift_runs_internal.h"
 
+#include "imukit/model_parameter.h"
 #include "imukit/noise.h"
 #include "model/model_schema_internal.h"
 
@@ -72,7 +74,30 @@ static void draw_triad(const draw *d, imk_triad *triad)
     memset(&triad->bias.hysteresis, 0, sizeof triad->bias.hysteresis);
 }
 
-void imki_drift_residual(imk_model *model, imk_random random, uint32_t run)
+/* Correlated values: L n in place of n, which the first of them keeps. A value that has no effect
+ * without a temperature profile is drawn for the sake of the others. */
+static void correlate(const draw *d, const double *factor, imk_model *model)
+{
+    const imk_correlation *c = &model->correlation;
+    double normal[IMK_CORRELATED_MAX];
+    for (int i = 0; i < c->count; i++) {
+        const imk_model_parameter *p = &c->parameter[i];
+        const imki_form form = imki_terms[p->term].form;
+        const uint8_t first = p->sensor == IMK_GYRO ? 0 : IMK_AXES_MAX;
+        const uint64_t stream =
+            imk_stream(d->run, IMK_TERM_RESIDUAL, (uint8_t)imki_terms[p->term].draw,
+                       (uint8_t)(first + p->axis));
+        double *sigma, *value = imk_model_parameter_at(model, *p, &sigma), sum = 0.0;
+        imk_random_normals(d->random, stream, p->element, 1, &normal[i]);
+        for (int j = 0; j <= i; j++)
+            sum += factor[i * (i + 1) / 2 + j] * normal[j];
+        if (value && form != IMKI_FORM_WARMTH && form != IMKI_FORM_WARM_INPUT &&
+            form != IMKI_FORM_WARMING)
+            *value = *sigma * sum;
+    }
+}
+
+void imki_drift_residual(imk_model *model, const double *factor, imk_random random, uint32_t run)
 {
     draw d = {random, run, 0, model->gyro.axis_count};
     draw_scalar(&d, RATE_ERROR, &model->timing.rate_error);
@@ -81,4 +106,5 @@ void imki_drift_residual(imk_model *model, imk_random random, uint32_t run)
     d.first_axis = IMK_AXES_MAX;
     d.axis_count = model->accel.axis_count;
     draw_triad(&d, &model->accel);
+    correlate(&d, factor, model);
 }

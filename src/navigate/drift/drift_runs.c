@@ -9,6 +9,8 @@
  * + floor(t rate + 1e-6), and compared with the truth at the instant when that row truly ended.
  *
  * Counts are divided by the sensitivity. A row that is lost repeats the one before it. */
+#include "drift_aided_internal.h"
+#include "drift_correlation_internal.h"
 #include "drift_runs_internal.h"
 
 #include "base/workspace_internal.h"
@@ -39,6 +41,7 @@ typedef struct run {
     double interval;            /* of rows in true time [s] */
     double *column[CHANNELS];   /* ROWS each */
     double held[CHANNELS];      /* the row before */
+    double deflection[2];       /* of gravity, north and east, in the row before */
     bool gone;                  /* has left the Earth, or found no attitude */
 } run;
 
@@ -58,8 +61,13 @@ typedef struct crew {
     double start;                  /* of row 0 in the trajectory */
     imk_model *drawn;              /* model of a run with what calibration left */
     double *height, *climb, *time; /* ROWS each */
+    imki_gravity_row *gravity;     /* ROWS; NULL: gravity is normal */
     size_t count;
+    double correlation[IMKI_CORRELATION_FACTOR]; /* of what calibration left, factored */
     run run[LANES];
+    size_t states;                         /* of a result: the errors, and of a filter more */
+    imki_aided_run *aided;                 /* of each run; NULL: no aids */
+    imk_navigation_filter_settings filter; /* of them */
 } crew;
 
 /* ---- memory ---- */
@@ -97,13 +105,30 @@ static size_t piece_count(const imk_drift_settings *settings)
                : 0;
 }
 
+static size_t gravity_size(const imk_drift_settings *settings)
+{
+    return settings->gravity_deflection > 0.0 ? ROWS * sizeof(imki_gravity_row) : 0;
+}
+
+/* The filters of the runs, and what is needed to describe them. */
+static size_t filters_size(const imk_model *model, const imk_drift_settings *settings)
+{
+    size_t filter;
+    (void)imki_drift_filter_states(model, settings, &filter);
+    return settings->aid_count == 0
+               ? 0
+               : LANES * (imki_aligned(sizeof(imki_aided_run)) + imki_aligned(filter)) +
+                     imki_aligned(imki_drift_filter_scratch());
+}
+
 size_t imk_drift_runs_workspace_size(const imk_model *model, const imk_drift_settings *settings)
 {
     const size_t run_size =
         imki_aligned(CHANNELS * ROWS * sizeof(double)) + simulator_size(model, settings);
     return imki_aligned(sizeof(crew)) + imki_aligned(sizeof(imk_model)) +
            imki_aligned(piece_count(settings) * sizeof(imk_trajectory_piece)) +
-           imki_aligned(3 * ROWS * sizeof(double)) + LANES * run_size + IMKI_ALIGNMENT_SLACK;
+           imki_aligned(3 * ROWS * sizeof(double)) + imki_aligned(gravity_size(settings)) +
+           LANES * run_size + filters_size(model, settings) + IMKI_ALIGNMENT_SLACK;
 }
 
 /* ---- start ---- */
@@ -149,13 +174,12 @@ static imk_status start_run(crew *c, run *r, imki_parts *memory, imk_error *erro
 {
     const imk_drift_settings *s = c->settings;
     const imk_model *model = c->model;
-    const bool given = s->alignment == IMK_ALIGNED_GIVEN;
     double *columns = imki_take(memory, CHANNELS * ROWS * sizeof(double));
     for (size_t i = 0; i < CHANNELS; i++)
         r->column[i] = columns + i * ROWS;
     if (s->compensated) {
         *c->drawn = *c->model;
-        imki_drift_residual(c->drawn, c->random, r->number);
+        imki_drift_residual(c->drawn, c->correlation, c->random, r->number);
         model = c->drawn;
     }
     r->interval = c->dt / (1.0 + model->timing.rate_error.value);
@@ -171,9 +195,19 @@ static imk_status start_run(crew *c, run *r, imki_parts *memory, imk_error *erro
         return status;
     const double begin = imk_simulator_true_time(r->simulator, (int64_t)c->alignment_rows);
     const imk_navigation_state truth = imki_drift_truth(c->trajectory, begin, 0.0);
-    r->start =
-        imki_drift_displaced(&truth, s->initial_sigma, c->slaved, given, c->random, r->number);
+    r->start = imki_drift_displaced(&truth, s, c->random, r->number);
     return IMK_OK;
+}
+
+static imk_status start_filters(crew *c, imki_parts *memory, imk_error *error)
+{
+    size_t size;
+    (void)imki_drift_filter_states(c->model, c->settings, &size);
+    c->aided = imki_take(memory, LANES * sizeof *c->aided);
+    for (size_t i = 0; i < LANES; i++)
+        c->aided[i] = (imki_aided_run){.memory = imki_take(memory, size), .memory_size = size};
+    return imki_drift_filter_settings(c->model, c->settings, &c->motion, &c->filter,
+                                      imki_take(memory, imki_drift_filter_scratch()), error);
 }
 
 static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *error)
@@ -181,17 +215,23 @@ static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *
     const imk_drift_settings *s = c->settings;
     c->drawn = imki_take(memory, sizeof *c->drawn);
     c->height = imki_take(memory, 3 * ROWS * sizeof(double));
+    if (s->gravity_deflection > 0.0)
+        c->gravity = imki_take(memory, gravity_size(s));
     c->climb = c->height + ROWS;
     c->time = c->climb + ROWS;
     c->kernel = c->random.kernel;
     c->dt = 1.0 / s->rate;
-    c->slaved = s->vertical == IMK_VERTICAL_SLAVED;
+    c->slaved = imk_drift_vertical(s) == IMK_VERTICAL_SLAVED;
     if (s->alignment == IMK_ALIGNED_SELF) {
         c->alignment_rows = (uint64_t)(s->alignment_time * s->rate + 0.5);
         c->alignment_rows += c->alignment_rows == 0;
     }
     c->last_row = c->alignment_rows + row_of(s->time[s->time_count - 1], s->rate);
+    if (s->compensated)
+        (void)imki_correlation_factor(&c->model->correlation, c->correlation); /* was checked */
     imk_status status = start_motion(c, memory, error);
+    if (status == IMK_OK && s->aid_count > 0)
+        status = start_filters(c, memory, error);
     for (size_t i = 0; i < c->count && status == IMK_OK; i++) {
         c->run[i].number = first + (uint32_t)i;
         status = start_run(c, &c->run[i], memory, error);
@@ -242,12 +282,18 @@ static void make_block(crew *c, uint64_t first)
         columns[i] = c->run[i].column;
     }
     imki_simulators_next(c->count, simulators, 1, columns);
+    if (c->gravity)
+        imki_gravity_rows(c->settings, c->trajectory, c->start, c->run[0].interval, first, ROWS,
+                          c->gravity);
     for (size_t i = 0; i < c->count; i++) {
         run *r = &c->run[i];
         divide_counts(&c->model->gyro, r->column);
         divide_counts(&c->model->accel, r->column + 3);
         if (c->model->timing.drops.value > 0.0)
             hold_lost(r, first);
+        if (c->gravity)
+            imki_gravity_deflect(c->settings, c->random, r->number, first, ROWS, c->gravity,
+                                 r->deflection, r->column + 3);
     }
 }
 
@@ -273,7 +319,7 @@ static void finish_alignment(crew *c)
         const imk_vector3 force = {{sum[3] / count, sum[4] / count, sum[5] / count}};
         const imk_geodetic place = imk_geodetic_from_ecef(r->start.position);
         imk_matrix3 c_nb = imk_matrix3_identity();
-        r->gone = imki_alignment_of_means(force, rate, &c_nb) != IMK_OK;
+        r->gone = imki_alignment_of_means(force, rate, place, &c_nb) != IMK_OK;
         r->start.attitude = imk_quaternion_from_matrix(
             imk_matrix3_multiply(imk_ned_axes(place.latitude, place.longitude), c_nb));
     }
@@ -289,6 +335,12 @@ static size_t run_of(const crew *c, size_t lane)
 
 static void start_lanes(crew *c)
 {
+    for (size_t i = 0; i < c->count && c->aided; i++) /* the settings have been checked */
+        if (imki_aided_run_start(&c->aided[i], c->settings, &c->filter, &c->run[i].start, c->random,
+                                 c->run[i].number, NULL) != IMK_OK)
+            c->run[i].gone = true;
+    if (c->aided)
+        return;
     for (size_t i = 0; i < (c->clocks_differ ? c->count : 1); i++)
         for (size_t lane = 0; lane < LANES; lane++) {
             const size_t from = c->clocks_differ ? i : run_of(c, lane);
@@ -298,6 +350,8 @@ static void start_lanes(crew *c)
 
 static imk_navigation_state state_of(const crew *c, size_t i)
 {
+    if (c->aided)
+        return imk_navigation_filter_state(c->aided[i].filter);
     return c->clocks_differ ? imk_strapdown_lanes_state(&c->lanes[i], 0)
                             : imk_strapdown_lanes_state(&c->lanes[0], i);
 }
@@ -323,7 +377,23 @@ static void navigate(crew *c, uint64_t first, size_t from, size_t to)
     const double *height = c->slaved ? c->height : NULL, *climb = c->slaved ? c->climb : NULL;
     if (from >= to)
         return;
-    for (size_t i = 0; i < (c->clocks_differ ? c->count : 1); i++) {
+    for (size_t i = 0; i < c->count && c->aided; i++)
+        if (!c->run[i].gone)
+            imki_aided_run_take(&c->aided[i],
+                                &(imki_aided_rows){.trajectory = c->trajectory,
+                                                   .simulator = c->run[i].simulator,
+                                                   .column = c->run[i].column,
+                                                   .dt = c->dt,
+                                                   .start = c->start,
+                                                   .interval = c->run[i].interval,
+                                                   .moves = c->moves,
+                                                   .height = c->height,
+                                                   .climb = c->climb,
+                                                   .time = c->time,
+                                                   .first = first,
+                                                   .before = c->alignment_rows},
+                                from, to);
+    for (size_t i = 0; i < (c->clocks_differ ? c->count : 1) && !c->aided; i++) {
         for (size_t lane = 0; lane < LANES; lane++)
             for (size_t j = 0; j < CHANNELS; j++)
                 channel[lane][j] = c->run[c->clocks_differ ? i : run_of(c, lane)].column[j] + from;
@@ -332,6 +402,8 @@ static void navigate(crew *c, uint64_t first, size_t from, size_t to)
                                 (const double *const(*)[CHANNELS])channel, height, climb);
     }
     for (size_t i = 0; i < c->count; i++) {
+        if (c->aided && c->run[i].gone)
+            continue;
         const imk_navigation_state state = state_of(c, i);
         const double radius = imk_vector3_norm(state.position);
         c->run[i].gone = c->run[i].gone || !(radius >= LOWEST && radius <= HIGHEST);
@@ -345,14 +417,16 @@ static void look(const crew *c, uint64_t row, size_t stride, double *errors)
         const run *r = &c->run[i];
         double *out = errors + i * stride;
         if (r->gone) {
-            for (size_t j = 0; j < IMK_DRIFT_STATES; j++)
+            for (size_t j = 0; j < c->states; j++)
                 out[j] = (double)NAN;
             continue;
         }
         const double time = imk_simulator_true_time(r->simulator, (int64_t)row);
         const imk_navigation_state truth = imki_drift_truth(c->trajectory, time, 0.0);
         const imk_navigation_state state = state_of(c, i);
-        imki_drift_errors(&state, &truth, out);
+        imki_drift_errors(&state, &truth, c->settings->attitude_errors, out);
+        if (c->states > IMK_DRIFT_STATES)
+            out[IMK_DRIFT_STATES] = imki_aided_run_nees(&c->aided[i], &truth);
     }
 }
 
@@ -361,7 +435,7 @@ static void look(const crew *c, uint64_t row, size_t stride, double *errors)
 static void compute(crew *c, double *errors)
 {
     const imk_drift_settings *s = c->settings;
-    const size_t stride = s->time_count * IMK_DRIFT_STATES;
+    const size_t stride = s->time_count * c->states;
     const uint64_t begin = c->alignment_rows + 1; /* first row of navigation */
     size_t seen = 0;
     if (c->alignment_rows == 0)
@@ -385,16 +459,16 @@ static void compute(crew *c, double *errors)
                 break;
             navigate(c, first, (size_t)(row - first), (size_t)(last + 1 - first));
             row = last + 1;
-            look(c, last, stride, errors + seen * IMK_DRIFT_STATES);
+            look(c, last, stride, errors + seen * c->states);
         }
         if (seen < s->time_count)
             navigate(c, first, (size_t)(row - first), ROWS);
     }
 }
 
-imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *settings, uint64_t seed,
-                          uint32_t first, size_t count, double *errors, void *workspace,
-                          size_t workspace_size, imk_error *error)
+static imk_status run_all(const imk_model *model, const imk_drift_settings *settings, uint64_t seed,
+                          uint32_t first, size_t count, size_t states, double *errors,
+                          void *workspace, size_t workspace_size, imk_error *error)
 {
     imk_status status = imk_drift_validate(model, settings, error);
     if (status != IMK_OK)
@@ -414,8 +488,27 @@ imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *sett
     c->settings = settings;
     c->random = imk_random_seeded(seed);
     c->count = count;
+    c->states = states;
     status = start(c, first, &rest, error);
     if (status == IMK_OK)
         compute(c, errors);
     return status;
+}
+
+imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *settings, uint64_t seed,
+                          uint32_t first, size_t count, double *errors, void *workspace,
+                          size_t workspace_size, imk_error *error)
+{
+    return run_all(model, settings, seed, first, count, IMK_DRIFT_STATES, errors, workspace,
+                   workspace_size, error);
+}
+
+imk_status imk_drift_aided_runs(const imk_model *model, const imk_drift_settings *settings,
+                                uint64_t seed, uint32_t first, size_t count, double *errors,
+                                void *workspace, size_t workspace_size, imk_error *error)
+{
+    if (settings->aid_count == 0)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "aid_count", "", "at least one aid");
+    return run_all(model, settings, seed, first, count, IMK_DRIFT_AIDED_STATES, errors, workspace,
+                   workspace_size, error);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What is navigated and when to look: defaults and checks, for the covariance and for the runs. */
+#include "drift_correlation_internal.h"
 #include "drift_settings_internal.h"
 
 #include "base/refuse_internal.h"
@@ -18,8 +19,11 @@ static const double rest_rate = 1e-3 * IMK_EARTH_RATE, rest_velocity = 1e-3 / 60
 
 imk_drift_settings imk_drift_default(void)
 {
-    return (imk_drift_settings){
-        .cookie = COOKIE, .latitude = 0.25 * PI, .rate = 100.0, .alignment_time = 300.0};
+    return (imk_drift_settings){.cookie = COOKIE,
+                                .latitude = 0.25 * PI,
+                                .rate = 100.0,
+                                .alignment_time = 300.0,
+                                .gravity_distance = 20e3};
 }
 
 static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
@@ -90,6 +94,13 @@ static imk_status check_numbers(const imk_drift_settings *s, imk_error *error)
         return refuse(error, "alignment", (double)s->alignment, "\"given\" or \"self\"");
     if (s->alignment == IMK_ALIGNED_SELF && !(s->alignment_time >= 1.0 && s->alignment_time <= 1e7))
         return refuse(error, "alignment_time", s->alignment_time, "1 s to 1e7 s");
+    if (!(s->gravity_deflection >= 0.0 && s->gravity_deflection <= 0.1))
+        return refuse(error, "gravity_deflection", s->gravity_deflection, "0 to 0.1 m/s^2");
+    if (!(s->gravity_distance >= 0.0 && s->gravity_distance <= 1e9))
+        return refuse(error, "gravity_distance", s->gravity_distance, "a distance up to 1e9 m");
+    if (s->attitude_errors != IMK_ATTITUDE_LOCAL && s->attitude_errors != IMK_ATTITUDE_EARTH)
+        return refuse(error, "attitude_errors", (double)s->attitude_errors,
+                      "\"local\" or \"earth\"");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
         if (!(s->initial_sigma[i] >= 0.0 && s->initial_sigma[i] <= 1e9)) {
             const imk_status status = refuse(error, "initial_sigma", s->initial_sigma[i],
@@ -99,6 +110,31 @@ static imk_status check_numbers(const imk_drift_settings *s, imk_error *error)
             return status;
         }
     return IMK_OK;
+}
+
+imk_vertical imk_drift_vertical(const imk_drift_settings *settings)
+{
+    for (size_t k = 0; k < settings->aid_count; k++) {
+        const imk_aid *aid = &settings->aid[k];
+        if (aid->kind == IMK_AID_HEIGHT ||
+            (aid->kind == IMK_AID_POSITION && isfinite(aid->sigma[2])))
+            return IMK_VERTICAL_FREE;
+    }
+    return settings->vertical;
+}
+
+int imk_drift_nees_degrees(const imk_drift_settings *settings)
+{
+    return imk_drift_vertical(settings) == IMK_VERTICAL_FREE ? 9 : 7;
+}
+
+double imk_drift_outage(const imk_drift_settings *settings)
+{
+    double last = (double)NAN;
+    for (size_t k = 0; k < settings->aid_count; k++)
+        if (isfinite(settings->aid[k].until) && !(settings->aid[k].until <= last))
+            last = settings->aid[k].until;
+    return last;
 }
 
 imk_status imki_drift_motion(const imk_drift_settings *settings, imki_drift_motion_of *motion,
@@ -115,6 +151,33 @@ imk_status imki_drift_motion(const imk_drift_settings *settings, imki_drift_moti
     return imk_trajectory_standstill((imk_geodetic){settings->latitude, 0.0, settings->height},
                                      roll_pitch_yaw, true, &motion->piece, &motion->trajectory,
                                      error);
+}
+
+/* Aids are those of the filter too, unless it has another description of the same aids. */
+static imk_status check_aids(const imk_drift_settings *s, imk_error *error)
+{
+    if (s->aid_count > IMK_AIDS_MAX || (s->aid_count > 0 && !s->aid))
+        return refuse(error, "aid_count", (double)s->aid_count, "up to 8 aids");
+    for (size_t k = 0; k < s->aid_count; k++) {
+        const imk_aid *aid = &s->aid[k], *filter = s->filter_aid ? &s->filter_aid[k] : aid;
+        imk_status status = imk_aid_validate(aid, error);
+        if (status == IMK_OK)
+            status = imk_aid_validate(filter, error);
+        if (status != IMK_OK)
+            return status;
+        if (!(aid->interval * s->rate >= 1.0 - 1e-9))
+            return refuse(error, "aid.interval", aid->interval,
+                          "readings of an aid at most once a sample");
+        if (!(aid->from >= 0.0))
+            return refuse(error, "aid.from", aid->from, "a time from the start on");
+        bool same = aid->kind == filter->kind;
+        for (int i = 0; i < 3; i++)
+            same = same && isfinite(aid->sigma[i]) == isfinite(filter->sigma[i]);
+        if (!same)
+            return imk_error_set(error, IMK_ERROR_CONFLICT, "filter_aid", "",
+                                 "the same kinds and axes as in aid");
+    }
+    return IMK_OK;
 }
 
 static imk_status check_motion(const imk_drift_settings *settings, imk_error *error)
@@ -146,6 +209,17 @@ static imk_status check_motion(const imk_drift_settings *settings, imk_error *er
     return IMK_OK;
 }
 
+static imk_status check_correlation(const imk_correlation *correlation, imk_error *error)
+{
+    double factor[IMKI_CORRELATION_FACTOR];
+    return imki_correlation_factor(correlation, factor)
+               ? IMK_OK
+               : imk_error_set(error, IMK_ERROR_CONFLICT, "correlation.values",
+                               "numbers that no quantities have as correlations: their matrix is "
+                               "not positive",
+                               "the correlations of one estimate, or none");
+}
+
 imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *settings,
                               imk_error *error)
 {
@@ -163,6 +237,16 @@ imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *
     if (status == IMK_OK)
         status = check_times(settings, error);
     if (status == IMK_OK)
+        status = check_aids(settings, error);
+    if (status == IMK_OK && settings->filter_model)
+        status = imk_model_validate(settings->filter_model, error);
+    if (status == IMK_OK && settings->filter_model)
+        status = check_triad(&settings->filter_model->gyro, "filter_model.gyro", error);
+    if (status == IMK_OK && settings->filter_model)
+        status = check_triad(&settings->filter_model->accel, "filter_model.accel", error);
+    if (status == IMK_OK)
         status = check_motion(settings, error);
+    if (status == IMK_OK && settings->compensated)
+        status = check_correlation(&model->correlation, error);
     return status;
 }

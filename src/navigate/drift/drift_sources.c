@@ -2,10 +2,11 @@
 /* From a model to the sources of error that the linear theory knows: each term on all axes of its
  * sensor one source, each number of it an independent element. Here those of known value, what
  * differs from run to run, the clock and the start; noise in drift_noise_sources.c. */
-#include "drift_covariance_internal.h"
+#include "drift_aided_internal.h"
+#include "drift_correlation_internal.h"
 
 #include "imukit/distort.h"
-#include "imukit/elementary.h"
+#include "imukit/navigate.h"
 #include "model/model_schema_internal.h"
 #include "noise/noise_terms_internal.h"
 
@@ -75,6 +76,12 @@ static void add_known(imki_drift_plan *plan, const known_term *known, const imk_
             const imki_drift_column column = known_column(known, triad, axis, j);
             imki_drift_add_constant(plan, compensated ? IMKI_ELEMENT_SIZE : IMKI_ELEMENT_MEAN,
                                     &column, &driver, ramp ? 0.0 : x, ramp ? x : 0.0);
+            if (plan->element && compensated)
+                plan->element[plan->element_count - 1].correlated =
+                    1 + imki_correlation_index(plan->correlation,
+                                               (imk_model_parameter){(uint8_t)known->sensor,
+                                                                     (uint8_t)known->term,
+                                                                     (uint8_t)axis, (uint8_t)j});
         }
 }
 
@@ -158,21 +165,9 @@ static void add_timing(imki_drift_plan *plan, const imk_timing *timing, bool com
     }
 }
 
-/* A unit that finds its attitude takes the vertical and north of the place where it believes to be:
- * what a displacement of it turns these by [rad/m], rotation about north, east, down. */
-static imk_vector3 turn_of_place(imk_geodetic place, int direction)
-{
-    double meridian, prime_vertical;
-    imk_curvature_radii(place.latitude, &meridian, &prime_vertical);
-    const double north = 1.0 / (meridian + place.height),
-                 east = 1.0 / (prime_vertical + place.height);
-    const double slope = imk_sin(place.latitude) / imk_cos(place.latitude);
-    return direction == 0   ? (imk_vector3){{0.0, -north, 0.0}}
-           : direction == 1 ? (imk_vector3){{east, 0.0, -slope * east}}
-                            : (imk_vector3){{0.0, 0.0, 0.0}};
-}
-
-/* Constants that nothing drives: their column is that of a bias, but their driver is zero. */
+/* Constants that nothing drives: their column is that of a bias, but their driver is zero. A
+ * displayed attitude belongs to the level where the unit believes to be, and so does one that it
+ * finds: an error of the position turns both. */
 static void add_initial(imki_drift_plan *plan, const imk_drift_settings *settings,
                         imk_geodetic start)
 {
@@ -181,7 +176,9 @@ static void add_initial(imki_drift_plan *plan, const imk_drift_settings *setting
                                          "attitude at the start"};
     static const int place[3] = {6, 3, 0}; /* in x */
     const bool self = settings->alignment == IMK_ALIGNED_SELF;
+    const bool displayed = self || settings->attitude_errors == IMK_ATTITUDE_LOCAL;
     const imk_matrix3 axes = imk_ned_axes(start.latitude, start.longitude);
+    const imk_matrix3 turn = imk_matrix3_multiply(axes, imk_level_turn(start));
     const imki_drift_driver constant = imki_driver_constant();
     const imki_drift_column column = imki_drift_column_of(IMKI_COLUMN_ONE, IMK_GYRO, 0, 0);
     for (int group = 0; group < 3; group++) {
@@ -192,11 +189,10 @@ static void add_initial(imki_drift_plan *plan, const imk_drift_settings *setting
         for (int j = 0; j < 3; j++) {
             imki_drift_element *element =
                 imki_drift_add_element(plan, IMKI_ELEMENT_SIZE, &column, &constant);
-            const imk_vector3 turn = imk_matrix3_apply(axes, turn_of_place(start, j));
             for (int i = 0; element && i < 3; i++) {
                 element->x[place[group] + i] = axes.m[i][j] * sigma[j];
-                if (group == 0 && self)
-                    element->x[i] = turn.v[i] * sigma[j];
+                if (group == 0 && displayed)
+                    element->x[i] = turn.m[i][j] * sigma[j];
             }
         }
     }
@@ -205,10 +201,11 @@ static void add_initial(imki_drift_plan *plan, const imk_drift_settings *setting
 /* ---- all ---------------------------------------------------------------------------------------
  */
 
-size_t imki_drift_drivers_max(const imk_model *model)
+size_t imki_drift_drivers_max(const imk_model *model, const imk_drift_settings *settings)
 {
     const imk_noise *noise[2] = {&model->gyro.noise, &model->accel.noise};
-    size_t count = IMK_FLICKER_STAGES + 6; /* white, constant, walk, ramp, two warm-ups */
+    /* white, constant, walk, ramp, gravity, two warm-ups; two correlation times of flicker noise */
+    size_t count = 2 * IMK_FLICKER_STAGES + 7 + settings->aid_count;
     for (int t = 0; t < IMKI_NOISE_TERMS; t++)
         for (int i = 0; i < 2 && imki_noise_terms[t]->count; i++)
             count += 3 * (size_t)imki_term_count(imki_noise_terms[t], noise[i]);
@@ -226,6 +223,8 @@ static void add_triad(imki_drift_plan *plan, const imk_triad *triad, int sensor,
 void imki_drift_sources(imki_drift_plan *plan, const imk_model *model,
                         const imk_drift_settings *settings, imk_geodetic start)
 {
+    plan->correlation =
+        settings->compensated && model->correlation.count > 1 ? &model->correlation : NULL;
     add_triad(plan, &model->gyro, IMK_GYRO, settings);
     add_triad(plan, &model->accel, IMK_ACCEL, settings);
     if (settings->motion) {
@@ -235,5 +234,7 @@ void imki_drift_sources(imki_drift_plan *plan, const imk_model *model,
     }
     if (model->timing.drops.value > 0.0)
         imki_drift_omit(plan, "timing.drops");
+    imki_drift_gravity_source(plan, settings);
     add_initial(plan, settings, start);
+    imki_drift_aid_sources(plan, settings);
 }

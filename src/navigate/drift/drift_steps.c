@@ -103,7 +103,7 @@ static void turn_of_vertical(const imki_drift_walk *walk, const imki_drift_node 
 
 static void fill_keep(const imki_drift_walk *walk, imki_drift_node *node, imk_vector3 up)
 {
-    node->slaved = walk->settings->vertical == IMK_VERTICAL_SLAVED;
+    node->slaved = imk_drift_vertical(walk->settings) == IMK_VERTICAL_SLAVED;
     memset(&node->keep, 0, sizeof node->keep);
     for (int i = 0; i < 9; i++)
         node->keep.m[i][i] = 1.0;
@@ -152,15 +152,22 @@ static void rest_on_sphere(const imki_drift_walk *walk, imki_drift_node *node, i
                                                        imk_vector3_scale(up, walk->earth.gravity));
 }
 
-/* By a difference over 2 ms, which smooths over the joints of the pieces. */
+/* By a difference over 2 ms, which smooths over the joints of the pieces; over 1 ms at the ends of
+ * the motion, beyond which its accelerations are gone. */
 static imk_vector3 force_slope_at(const imki_drift_walk *walk, double time)
 {
     const double reach = 1e-3;
+    double first, last;
     imk_motion_state ahead, behind;
-    imk_trajectory_state(&walk->motion.trajectory, time + reach, &ahead);
-    imk_trajectory_state(&walk->motion.trajectory, time - reach, &behind);
+    imk_trajectory_span(&walk->motion.trajectory, &first, &last);
+    const double after = time + reach <= last ? time + reach : time;
+    const double before = time - reach >= first ? time - reach : time;
+    if (!(after > before))
+        return (imk_vector3){{0.0, 0.0, 0.0}};
+    imk_trajectory_state(&walk->motion.trajectory, after, &ahead);
+    imk_trajectory_state(&walk->motion.trajectory, before, &behind);
     return imk_vector3_scale(imk_vector3_subtract(ahead.specific_force, behind.specific_force),
-                             0.5 / reach);
+                             1.0 / (after - before));
 }
 
 void imki_drift_node_at(imki_drift_walk *walk, double time, imki_drift_node *node)
@@ -342,6 +349,7 @@ static void fill_on_motion(const imki_drift_plan *plan, imki_drift_step *step)
 void imki_drift_fill_step(const imki_drift_walk *walk, const imki_drift_plan *plan,
                           imki_drift_step *step)
 {
+    imki_drift_gravity_step(walk->settings, walk->rests, step);
     if (walk->rests)
         fill_at_rest(plan, step);
     else

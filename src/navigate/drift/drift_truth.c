@@ -4,8 +4,8 @@
  *
  *     r^ - r = C e_r,   v^ - v = C e_v,   q^ = q(C e_a) q
  *
- * q(.) being the quaternion of a rotation vector: the attitude is compared in Earth-fixed axes, so
- * that no place is special, and a wrong position does not make a wrong attitude. */
+ * q(.) being the quaternion of a rotation vector, if the attitude is compared in Earth-fixed axes;
+ * else e_a is that of the displayed attitude (displayed_attitude.c). */
 #include "drift_runs_internal.h"
 
 #include "imukit/noise.h"
@@ -53,8 +53,7 @@ void imki_drift_heights(const imk_trajectory *trajectory, size_t count, const si
     imki_cursor_start(&cursor, trajectory, time[0]);
     for (size_t k = 0; k < count; k++) {
         double p[3], v[3];
-        imki_cursor_advance(&cursor, time[k]);
-        moving_point(trajectory, cursor.piece, time[k], p, v);
+        moving_point(trajectory, imki_cursor_at(&cursor, time[k]), time[k], p, v);
         const double x = trajectory->origin[0] + p[0], y = trajectory->origin[1] + p[1];
         const double z = trajectory->origin[2] + p[2], pp = x * x + y * y;
         const slope vertical = vertical_at(pp, z);
@@ -79,30 +78,37 @@ static imk_matrix3 axes_at(const imk_navigation_state *truth)
 
 /* State i is normal 0 of the stream (run, IMK_TERM_INITIAL, 0, i). */
 imk_navigation_state imki_drift_displaced(const imk_navigation_state *truth,
-                                          const double sigma[IMK_DRIFT_STATES], bool slaved,
-                                          bool attitude, imk_random random, uint32_t run)
+                                          const imk_drift_settings *settings, imk_random random,
+                                          uint32_t run)
 {
+    const double *sigma = settings->initial_sigma;
+    const bool slaved = settings->vertical == IMK_VERTICAL_SLAVED;
+    const bool given = settings->alignment == IMK_ALIGNED_GIVEN;
     imk_vector3 error[3] = {{{0.0}}};
+    bool any = false;
     for (int i = 0; i < IMK_DRIFT_STATES; i++) {
-        if (sigma[i] == 0.0 || (slaved && (i == 2 || i == 5)) || (!attitude && i >= 6))
+        if (sigma[i] == 0.0 || (slaved && (i == 2 || i == 5)) || (!given && i >= 6))
             continue;
         double normal;
         imk_random_normals(random, imk_stream(run, IMK_TERM_INITIAL, 0, (uint8_t)i), 0, 1, &normal);
         error[i / 3].v[i % 3] = sigma[i] * normal;
+        any = any || i < 3 || i >= 6;
     }
     const imk_matrix3 axes = axes_at(truth);
-    const imk_quaternion turn =
-        imk_quaternion_from_rotation_vector(imk_matrix3_apply(axes, error[2]));
-    return (imk_navigation_state){
-        .time = truth->time,
-        .position = imk_vector3_add(truth->position, imk_matrix3_apply(axes, error[0])),
-        .velocity = imk_vector3_add(truth->velocity, imk_matrix3_apply(axes, error[1])),
-        .attitude = imk_quaternion_multiply(turn, truth->attitude),
-    };
+    imk_navigation_state state = *truth;
+    state.position = imk_vector3_add(truth->position, imk_matrix3_apply(axes, error[0]));
+    state.velocity = imk_vector3_add(truth->velocity, imk_matrix3_apply(axes, error[1]));
+    if (any && given && settings->attitude_errors == IMK_ATTITUDE_LOCAL)
+        state.attitude = imk_displayed_attitude(truth, state.position, error[2]);
+    else
+        state.attitude = imk_quaternion_multiply(
+            imk_quaternion_from_rotation_vector(imk_matrix3_apply(axes, error[2])),
+            truth->attitude);
+    return state;
 }
 
 void imki_drift_errors(const imk_navigation_state *estimate, const imk_navigation_state *truth,
-                       double errors[IMK_DRIFT_STATES])
+                       imk_attitude_errors stated, double errors[IMK_DRIFT_STATES])
 {
     const imk_matrix3 to_ned = imk_matrix3_transpose(axes_at(truth));
     const imk_quaternion turn =
@@ -116,5 +122,9 @@ void imki_drift_errors(const imk_navigation_state *estimate, const imk_navigatio
         const imk_vector3 ned = imk_matrix3_apply(to_ned, difference[part]);
         for (int i = 0; i < 3; i++)
             errors[3 * part + i] = ned.v[i];
+    }
+    if (stated == IMK_ATTITUDE_LOCAL) {
+        const imk_vector3 phi = imk_displayed_attitude_error(estimate, truth);
+        memcpy(errors + 6, phi.v, sizeof phi.v);
     }
 }

@@ -79,6 +79,7 @@ static layout lay_out(const imk_model *model, const imk_filter_tuning_settings *
                       void *memory)
 {
     layout l = {.memory = imki_parts_of(memory)};
+    const imk_drift_settings drift = imk_drift_default();
     imki_tuning_grid grid;
     size_t sources, elements;
     imki_tuning_grid_of(model, settings, &grid);
@@ -95,9 +96,12 @@ static layout lay_out(const imk_model *model, const imk_filter_tuning_settings *
     plan.drift.source = l.source;
     plan.drift.part = imki_take(&l.memory, sources * sizeof *plan.drift.part);
     plan.drift.element = imki_take(&l.memory, elements * sizeof *plan.drift.element);
+    plan.drift.states = IMK_DRIFT_STATES;
+    plan.drift.covariance = imki_take(&l.memory, sources * sizeof(imki_matrix9));
+    plan.drift.vector = imki_take(&l.memory, 3 * elements * IMK_DRIFT_STATES * sizeof(double));
     plan.drift.column = imki_take(&l.memory, IMKI_DRIFT_COLUMNS * sizeof *plan.drift.column);
     plan.drift.driver =
-        imki_take(&l.memory, imki_drift_drivers_max(model) * sizeof *plan.drift.driver);
+        imki_take(&l.memory, imki_drift_drivers_max(model, &drift) * sizeof *plan.drift.driver);
     plan.element = imki_take(&l.memory, elements * sizeof *plan.element);
     l.lane = imki_take(&l.memory, IMKI_TUNING_LANES * sizeof *l.lane);
     for (size_t i = 0; i < IMKI_TUNING_LANES; i++)

@@ -298,7 +298,7 @@ imk_status imk_filter_tuning_simulate(const imk_model *model,
     memcpy(r.sigma, tuning->bias_sigma, sizeof r.sigma);
     memcpy(r.model, model, sizeof *model);
     if (settings->compensated)
-        imki_drift_residual(r.model, r.random, number);
+        imki_drift_residual(r.model, NULL, r.random, number);
     make_slow(r.slow, r.model, settings->learned);
     const size_t each = settings->window_count * r.grid.time_count * IMK_TUNING_STATES;
     for (size_t m = 0; m < settings->motion_count && status == IMK_OK; m++)

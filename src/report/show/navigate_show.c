@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The result of a navigation: the attitude at the start, the track, its end. */
-#include "show_internal.h"
+#include "navigate_aids_show_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -47,6 +47,7 @@ static void show_inputs(const imk_navigate_log *n, const char *name, imk_result 
     imk_result_quantity(result, "latitude", n->settings.place.latitude, "rad");
     imk_result_quantity(result, "longitude", n->settings.place.longitude, "rad");
     imk_result_quantity(result, "height", n->settings.place.height, "m");
+    imk_result_flag(result, "smoothed", n->settings.smooth);
     imk_result_text(result, "vertical", n->settings.hold_height ? "slaved" : "free");
     imk_result_end(result);
 }
@@ -58,8 +59,13 @@ static void show_start(const imk_navigate_log *n, imk_result *result)
     for (int i = 0; i < 3; i++)
         imk_result_quantity(result, angles[i], n->attitude[i], "rad");
     show_three("attitude_sigma", n->attitude_sigma, "rad", result);
+    if (!is_aligned(n)) {
+        show_three("velocity", n->settings.velocity, "m/s", result);
+        imk_result_flag(result, "velocity_given", n->settings.velocity_given);
+    }
     if (is_aligned(n)) {
         imk_result_text(result, "method", method_names[n->method]);
+        imk_result_flag(result, "north_found", !n->coarse);
         imk_result_quantity(result, "duration", n->record.dt * (double)n->first, "s");
         imk_result_quantity(result, "disturbance", n->alignment.disturbance, "m/s");
         imk_result_number(result, "gravity_ratio", n->alignment.gravity_ratio);
@@ -95,7 +101,7 @@ static void show_last(const imk_navigate_log *n, imk_result *result)
 
 static void show_data(const imk_navigate_log *n, const char *name, imk_result *result)
 {
-    const imk_zero_velocity_counts *c = &n->counts;
+    const imk_navigation_filter_counts *c = &n->counts;
     show_inputs(n, name, result);
     imk_result_object(result, "result");
     show_start(n, result);
@@ -111,6 +117,7 @@ static void show_data(const imk_navigate_log *n, const char *name, imk_result *r
     imk_result_number(result, "chi_square_per_degree",
                       c->degrees > 0 ? c->chi_square / (double)c->degrees : (double)NAN);
     imk_result_end(result);
+    imki_show_aids_data(n, result);
     imk_result_end(result);
 }
 
@@ -132,7 +139,11 @@ static void show_attitude(const imk_navigate_log *n, imk_result *result)
                  heading = n->attitude_sigma[2] / degree;
     char text[120], north[60] = "";
     if (!is_aligned(n)) {
-        imk_result_line(result, "Attitude given: %s", angles_text(n->attitude, text));
+        const double *v = n->settings.velocity;
+        imk_result_line(
+            result, "Attitude given: %s\nVelocity %s: north %.4g, east %.4g, down %.4g m/s",
+            angles_text(n->attitude, text),
+            n->settings.velocity_given ? "given" : "assumed (--velocity)", v[0], v[1], v[2]);
         return;
     }
     if (!(n->attitude_sigma[2] < unknown_heading))
@@ -146,7 +157,8 @@ static void show_attitude(const imk_navigate_log *n, imk_result *result)
         "  force %.6f of normal gravity, rotation %.4f of the Earth's, sway %.2g m/s",
         n->record.dt * (double)n->first, method_names[n->method],
         !n->settings.method_given && n->method == IMK_ALIGNMENT_MEANS
-            ? ", because the gyros read more than the Earth's rotation"
+            ? n->settings.model ? ", because the gyro biases hide the Earth's rotation"
+                                : ", because the gyros read more than the Earth's rotation"
             : "",
         angles_text(n->attitude, text), n->settings.heading_given ? " (yaw given)" : "", tilt,
         north, n->settings.model ? "" : " (from the scatter alone; --model includes the biases)",
@@ -259,6 +271,10 @@ static void show_track(const imk_navigate_log *n, const char *name, imk_result *
     imk_figure_builder *figure = imk_result_figure(
         result, name, 2,
         !n->settings.model ? "Horizontal track, and position and velocity against time."
+        : n->aid_count > 0
+            ? "Grey: 1 sigma of the error that the model predicts, about the track. Innovations "
+              "are "
+              "divided by their 1 sigma: if model and sigmas are right, one of 20 is beyond 2."
         : n->at_rest
             ? "Grey: 1 sigma of the error that the model predicts, about the start, where the unit "
               "stood."
@@ -273,6 +289,7 @@ static void show_track(const imk_navigate_log *n, const char *name, imk_result *
         if (lines[k].y < IMK_TRACK_SIGMA || n->settings.model)
             add_line(n, &lines[k], figure);
     }
+    imki_show_aids_panels(n, figure);
 }
 
 /* ---- all ---- */
@@ -301,14 +318,18 @@ static void show_page(const imk_navigate_log *n, const char *name, imk_result *r
         hypot(n->attitude_sigma[0], n->attitude_sigma[1]) / degree, n->attitude_sigma[2] / degree);
     imk_result_heading(result, "Track");
     show_track(n, name, result);
+    if (n->aid_count > 0)
+        imk_result_heading(result, "Aids");
+    imki_show_aids_table(n, result);
     imk_result_heading(result, "At the end");
 }
 
 static void show_rest(const imk_navigate_log *n, imk_result *result)
 {
-    const imk_zero_velocity_counts *c = &n->counts;
+    const imk_navigation_filter_counts *c = &n->counts;
     show_end_attitude(n, result);
     show_drift(n, 0, result);
+    imki_show_aids_table(n, result);
     if (c->accepted + c->refused > 0)
         imk_result_line(result,
                         "Zero-velocity updates: %llu, refused %llu; innovations squared %.2f times "

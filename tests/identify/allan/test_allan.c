@@ -254,7 +254,9 @@ static void test_noise_type_of_means(void **state)
         imk_flicker_state flicker;
         imk_power_law type;
         memset(y, 0, sizeof y);
-        CHECK_STATUS(imk_flicker_start(&flicker, 1, 0.01, imk_random_seeded(21), stream), IMK_OK);
+        CHECK_STATUS(
+            imk_flicker_start(&flicker, (imk_flicker){1, 0}, 0.01, imk_random_seeded(21), stream),
+            IMK_OK);
         imk_flicker_add(&flicker, N, y);
         imk_allan_sums(N, y, y, NULL);
         CHECK_STATUS(imk_allan_noise_type(N, y, 20, &type), IMK_OK);

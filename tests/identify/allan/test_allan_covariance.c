@@ -173,7 +173,8 @@ static void test_strides(void **state)
     compare(&mixed, 0.01, FACTORS, 0.06, "plain");
 }
 
-/* Degrees of freedom 2 v^2/var agree with those of allan.h at every octave of a long record. */
+/* Degrees of freedom 2 v^2/var agree with those of allan.h at every octave of a long record, all of
+ * them far below the longest correlation time of flicker noise. */
 static void test_degrees_of_freedom(void **state)
 {
     (void)state;
@@ -183,14 +184,14 @@ static void test_degrees_of_freedom(void **state)
     for (size_t i = 0; i < 20; i++)
         factors[i] = (size_t)1 << i;
     const imk_allan_table table = {
-        .dt = 1, .count = 20, .factors = factors, .record_count = 1, .lengths = &n};
+        .dt = 0.001, .count = 20, .factors = factors, .record_count = 1, .lengths = &n};
     static double c[400];
     for (int k = 0; k < 3; k++) {
         imk_allan_noise noise = {0};
         noise.term[IMK_NOISE_WHITE + k] = 1;
         CHECK_OK(imk_allan_covariance(&table, &noise, c, workspace, sizeof workspace));
         for (size_t i = 1; i < 20; i++) {
-            const double v = imk_allan_noise_variance(&noise, 1, factors[i]);
+            const double v = imk_allan_noise_variance(&noise, 0.001, factors[i]);
             /* Those of m > 256 are by proportion, which leaves out the sampling at the ends; at
              * the longest tau they are 1e-2 apart. Flicker noise: continuous against stages. */
             CHECK_RELATIVE(2 * v * v / c[i * 21],
@@ -248,7 +249,7 @@ static void test_against_draws(void **state)
         double v[COUNT];
         memset(y, 0, sizeof y);
         CHECK_OK(imk_white_start(&white, 1, 1, random, 1));
-        CHECK_OK(imk_flicker_start(&flicker, 0.2, 1, random, 2ull << 32));
+        CHECK_OK(imk_flicker_start(&flicker, (imk_flicker){0.2, 0}, 1, random, 2ull << 32));
         CHECK_OK(imk_random_walk_start(&walk, 0.003, 1, random, 3ull << 32));
         imk_white_add(&white, n, y);
         imk_flicker_add(&flicker, n, y);

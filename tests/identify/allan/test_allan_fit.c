@@ -184,7 +184,7 @@ static void simulate(const imk_allan_noise *noise, uint64_t seed, double *varian
         factors[i] = (size_t)1 << i;
     memset(y, 0, sizeof y);
     CHECK_OK(imk_white_start(&white, noise->term[1], 1, random, 1));
-    CHECK_OK(imk_flicker_start(&flicker, noise->term[2], 1, random, 2ull << 32));
+    CHECK_OK(imk_flicker_start(&flicker, (imk_flicker){noise->term[2], 0}, 1, random, 2ull << 32));
     CHECK_OK(imk_random_walk_start(&walk, noise->term[3], 1, random, 3ull << 32));
     imk_white_add(&white, RECORD, y);
     imk_flicker_add(&flicker, RECORD, y);

@@ -167,16 +167,17 @@ static void test_bias_and_coverage(void **state)
             memset(rate, 0, sizeof rate);
             imk_white_start(&white, 1, 1, random, imk_stream(run, 1, 0, 0));
             imk_white_add(&white, N, rate);
-            imk_flicker_start(&flicker, 0.3, 1, random, imk_stream(run, 2, 0, 0));
+            imk_flicker_start(&flicker, (imk_flicker){0.3, 0}, 1, random, imk_stream(run, 2, 0, 0));
             imk_flicker_add(&flicker, N, rate);
             imk_random_walk_start(&walk, 0.03, 1, random, imk_stream(run, 3, 0, 0));
             imk_random_walk_add(&walk, N, rate);
             take_out(mask, run);
             evaluate(N, false, FACTORS, factors, p);
             for (size_t i = 0; i < FACTORS; i++) {
-                truth[i] = imk_white_sampled_allan_variance(1, 1, factors[i]) +
-                           imk_flicker_sampled_allan_variance(0.3, 1, factors[i]) +
-                           imk_random_walk_sampled_allan_variance(0.03, 1, factors[i]);
+                truth[i] =
+                    imk_white_sampled_allan_variance(1, 1, factors[i]) +
+                    imk_flicker_sampled_allan_variance((imk_flicker){0.3, 0}, 1, factors[i]) +
+                    imk_random_walk_sampled_allan_variance(0.03, 1, factors[i]);
                 const double v = p[i].point.deviation * p[i].point.deviation;
                 sum[i] += v;
                 squares[i] += v * v;

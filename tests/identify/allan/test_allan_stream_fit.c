@@ -20,7 +20,7 @@ static void run_device(uint64_t run, imk_allan_stream *stream)
     imk_white_state white;
     imk_flicker_state flicker;
     CHECK_OK(imk_white_start(&white, WHITE, DT, random, 1));
-    CHECK_OK(imk_flicker_start(&flicker, FLICKER, DT, random, 1000));
+    CHECK_OK(imk_flicker_start(&flicker, (imk_flicker){FLICKER, 0}, DT, random, 1000));
     imk_allan_stream_start(stream, 0);
     for (size_t i = 0; i < SAMPLES; i += BLOCK) {
         for (size_t k = 0; k < BLOCK; k++)

@@ -59,7 +59,7 @@ static void identify_records(session *b, uint64_t run, double change)
         CHECK_OK(imk_white_start(&white, factor * WHITE, DT, random, 1));
         imk_white_add(&white, SAMPLES, b->samples);
         imk_flicker_state flicker;
-        CHECK_OK(imk_flicker_start(&flicker, factor * FLICKER, DT, random, 1000));
+        CHECK_OK(imk_flicker_start(&flicker, (imk_flicker){factor * FLICKER, 0}, DT, random, 1000));
         imk_flicker_add(&flicker, SAMPLES, b->samples);
         if (r == 1)
             imk_ramp_add(0.003, DT, 0, SAMPLES, b->samples);

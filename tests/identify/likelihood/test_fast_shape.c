@@ -21,8 +21,9 @@ static double *make_record(size_t n, uint64_t seed, imk_low_pass filter, double 
                      IMK_OK);
     imk_arma_add(&state, n, x);
     imk_flicker_state *flicker = malloc(sizeof *flicker);
-    assert_int_equal(imk_flicker_start(flicker, instability, DT, random, (uint64_t)2 << 40),
-                     IMK_OK);
+    assert_int_equal(
+        imk_flicker_start(flicker, (imk_flicker){instability, 0}, DT, random, (uint64_t)2 << 40),
+        IMK_OK);
     imk_flicker_add(flicker, n, x);
     free(flicker);
     for (size_t i = 0; i < count; i++) {
@@ -61,10 +62,11 @@ static void test_overlapping(void **state)
     assert_true(r.verdict & IMK_VERDICT_RESONANCE);
     for (double f = 2; f < 49; f *= 1.04) {
         double expected = imk_filtered_white_sampled_spectrum(1, filter, DT, f) +
-                          imk_flicker_sampled_spectrum(0.5, DT, f);
+                          imk_flicker_sampled_spectrum((imk_flicker){0.5, 0}, DT, f);
         double found =
             imk_filtered_white_sampled_spectrum(r.term[IMK_NOISE_WHITE].value, r.filter, DT, f) +
-            imk_flicker_sampled_spectrum(r.term[IMK_NOISE_BIAS_INSTABILITY].value, DT, f);
+            imk_flicker_sampled_spectrum((imk_flicker){r.term[IMK_NOISE_BIAS_INSTABILITY].value, 0},
+                                         DT, f);
         for (int i = 0; i < 2; i++)
             expected += imk_resonance_sampled_spectrum(truth[i], DT, f);
         for (int i = 0; i < r.resonance_count; i++)

@@ -34,7 +34,8 @@ static double *make_record(const truth *t, size_t n, double dt, uint64_t seed, u
     }
     if (t->bias_instability > 0) {
         imk_flicker_state state;
-        assert_int_equal(imk_flicker_start(&state, t->bias_instability, dt, random, stream + 2),
+        assert_int_equal(imk_flicker_start(&state, (imk_flicker){t->bias_instability, 0}, dt,
+                                           random, stream + 2),
                          IMK_OK);
         imk_flicker_add(&state, n, x);
     }

@@ -50,7 +50,8 @@ static void test_white(void **state)
 
 /* 3 h at 100 Hz of N = 0.3 deg/sqrt(h), B = 8 deg/h, K = 20 deg/h/sqrt(h). The sum over all k of
  * the spectra of ideal flicker noise and of the walk, by NumPy, gives .06937 %, 2.965 %, 32.57 %;
- * what the ends of a finite record take from flicker noise makes some per cent of difference to K.
+ * what the ends of a finite record take from flicker noise makes some per cent of difference to K,
+ * and its density at half the sample rate, 0.92 of the ideal one's, 0.12 % to N.
  * In simulated records K is called present in 67 to 73 %. */
 static void test_golden(void **state)
 {
@@ -59,7 +60,7 @@ static void test_golden(void **state)
         .term = {0, 0.3 * DEGREE / 60, 8 * DEGREE / 3600, 20 * DEGREE / 3600 / 60}};
     const imk_bounds_settings settings = settings_of(0.01);
     const imk_identification_bounds b = bounds_of(&noise, &settings, 10800);
-    CHECK_RELATIVE(b.term[IMK_NOISE_WHITE].relative, 0.00069369, 1e-3);
+    CHECK_RELATIVE(b.term[IMK_NOISE_WHITE].relative, 0.0006937, 2e-3);
     CHECK_RELATIVE(b.term[IMK_NOISE_BIAS_INSTABILITY].relative, 0.029646, 0.01);
     CHECK_RELATIVE(b.term[IMK_NOISE_RANDOM_WALK].relative, 0.32568, 0.03);
     CHECK_CLOSE(b.term[IMK_NOISE_RANDOM_WALK].detection, 0.69, 0.05);
@@ -83,7 +84,8 @@ static void test_full_sum(void **state)
         const double f = (double)k / (2 * N * dt);
         const double part[P] = {
             imk_quantization_sampled_spectrum(1, dt, f), 1,
-            imk_flicker_cosine_spectrum(1, dt, N, k), imk_random_walk_sampled_spectrum(1, dt, f),
+            imk_flicker_cosine_spectrum((imk_flicker){1, 0}, dt, N, k),
+            imk_random_walk_sampled_spectrum(1, dt, f),
             imk_gauss_markov_cosine_spectrum((imk_gauss_markov){1, 20}, dt, N, k)};
         const double s =
             1e-4 * part[0] + part[1] + 0.25 * part[2] + 9e-4 * part[3] + 0.64 * part[4];

@@ -18,7 +18,9 @@ static void make(uint32_t run, double instability, size_t n, double *x)
     imk_random_normals(random, imk_stream(run, 1, 0, 0), 0, n, x);
     for (size_t i = 0; i < n; i++)
         x[i] *= 10; /* 1/sqrt(dt) */
-    CHECK_STATUS(imk_flicker_start(&f, instability, DT, random, imk_stream(run, 2, 0, 0)), IMK_OK);
+    CHECK_STATUS(
+        imk_flicker_start(&f, (imk_flicker){instability, 0}, DT, random, imk_stream(run, 2, 0, 0)),
+        IMK_OK);
     imk_flicker_add(&f, n, x);
 }
 

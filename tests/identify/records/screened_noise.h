@@ -23,7 +23,7 @@ static void make(uint64_t seed, double level, double flicker, double walk)
         rate[i] = level;
     imk_white_start(&w, 1, 1, random, 1);
     imk_white_add(&w, N, rate);
-    imk_flicker_start(&f, flicker, 1, random, 2);
+    imk_flicker_start(&f, (imk_flicker){flicker, 0}, 1, random, 2);
     imk_flicker_add(&f, N, rate);
     imk_random_walk_start(&k, walk, 1, random, 3);
     imk_random_walk_add(&k, N, rate);

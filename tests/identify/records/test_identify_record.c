@@ -37,7 +37,7 @@ static double *make_record(const truth *t, size_t n, uint64_t seed)
     }
     if (t->bias_instability > 0) {
         imk_flicker_state state;
-        CHECK_OK(imk_flicker_start(&state, t->bias_instability, dt, random, 2));
+        CHECK_OK(imk_flicker_start(&state, (imk_flicker){t->bias_instability, 0}, dt, random, 2));
         imk_flicker_add(&state, n, x);
     }
     if (t->random_walk > 0) {

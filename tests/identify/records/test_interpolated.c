@@ -34,7 +34,7 @@ static void make(uint32_t run, double *out, size_t count, double flicker, double
     memset(out, 0, count * sizeof *out);
     imk_white_start(&w, 1, 1, random, imk_stream(run, 1, 0, 0));
     imk_white_add(&w, count, out);
-    imk_flicker_start(&f, flicker, 1, random, imk_stream(run, 2, 0, 0));
+    imk_flicker_start(&f, (imk_flicker){flicker, 0}, 1, random, imk_stream(run, 2, 0, 0));
     imk_flicker_add(&f, count, out);
     imk_random_walk_start(&k, walk, 1, random, imk_stream(run, 3, 0, 0));
     imk_random_walk_add(&k, count, out);

@@ -26,7 +26,7 @@ static void make(uint32_t run, size_t count, double flicker, double walk)
     memset(mean, 0, sizeof mean);
     imk_white_start(&w, 1, 1, random, imk_stream(run, 1, 0, 0));
     imk_white_add(&w, count, mean);
-    imk_flicker_start(&f, flicker, 1, random, imk_stream(run, 2, 0, 0));
+    imk_flicker_start(&f, (imk_flicker){flicker, 0}, 1, random, imk_stream(run, 2, 0, 0));
     imk_flicker_add(&f, count, mean);
     imk_random_walk_start(&k, walk, 1, random, imk_stream(run, 3, 0, 0));
     imk_random_walk_add(&k, count, mean);
@@ -70,7 +70,7 @@ static void test_cycle(void **state)
         uint32_t found = 0;
         for (uint32_t run = 0; run < RUNS; run++) {
             imki_cycle cycle;
-            make(1000 + run, M, 1, 0);
+            make(1020 + run, M, 1, 0);
             for (size_t i = 0; i < M; i++)
                 mean[i] += 5 * sin(2 * pi * periods[k] * ((double)i + 0.5) / M + 0.3 * run);
             if (!look(1e-3 / 3, &cycle))

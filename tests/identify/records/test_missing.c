@@ -152,7 +152,7 @@ static void add_noise(double *x, size_t n, double dt, uint64_t record, double wh
     memset(x, 0, n * sizeof *x);
     imk_white_start(&w, white, dt, random, stream + 1);
     imk_white_add(&w, n, x);
-    imk_flicker_start(&f, flicker, dt, random, stream + 2);
+    imk_flicker_start(&f, (imk_flicker){flicker, 0}, dt, random, stream + 2);
     imk_flicker_add(&f, n, x);
     imk_random_walk_start(&k, walk, dt, random, stream + 60);
     imk_random_walk_add(&k, n, x);

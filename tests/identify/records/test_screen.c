@@ -46,7 +46,7 @@ static void make(uint32_t run, double white, double flicker, double walk)
     memset(rate, 0, sizeof rate);
     imk_white_start(&w, white, 1, random, imk_stream(run, 1, 0, 0));
     imk_white_add(&w, N, rate);
-    imk_flicker_start(&f, flicker, 1, random, imk_stream(run, 2, 0, 0));
+    imk_flicker_start(&f, (imk_flicker){flicker, 0}, 1, random, imk_stream(run, 2, 0, 0));
     imk_flicker_add(&f, N, rate);
     imk_random_walk_start(&k, walk, 1, random, imk_stream(run, 3, 0, 0));
     imk_random_walk_add(&k, N, rate);
@@ -59,7 +59,7 @@ static void test_sound_records(void **state)
     (void)state;
     size_t outliers = 0, steps = 0, warm = 0;
     const imk_screen_settings settings = settings_of();
-    for (uint32_t run = 0; run < 60; run++) {
+    for (uint32_t run = 0; run < (check_quick() ? 12 : 60); run++) {
         make(run, run % 6 == 3 ? 0.01 : 1, run % 6 == 5 ? 1 : 0, run % 6 == 3 ? 1 : 0);
         for (size_t i = 0; i < N; i++) {
             if (run % 6 == 1)
@@ -229,7 +229,7 @@ static void test_warm_up(void **state)
     (void)state;
     const imk_screen_settings settings = settings_of();
     size_t called = 0;
-    for (uint32_t run = 0; run < 60; run++) {
+    for (uint32_t run = 0; run < (check_quick() ? 12 : 60); run++) {
         make(100 + run, 1, run % 2 ? 0.2 : 0, run % 3 ? 0.02 : 0.3);
         called += look(&settings).warm_up;
     }
@@ -262,7 +262,7 @@ static void test_temperature(void **state)
     size_t called = 0;
     for (size_t i = 0; i < N; i++)
         temperature[i] = 25 + 3 * sin((double)i / 2000) + 5 * (double)i / N;
-    for (uint32_t run = 0; run < 40; run++) {
+    for (uint32_t run = 0; run < (check_quick() ? 8 : 40); run++) {
         make(300 + run, 1, run % 2 ? 0.5 : 0.1, run % 4 == 3 ? 0.05 : 0);
         called += look(&settings).temperature_degree > 0;
     }

@@ -49,7 +49,7 @@ static void make(uint64_t seed, double white, double flicker, double walk)
     memset(rate, 0, sizeof rate);
     imk_white_start(&w, white, 1, random, 1);
     imk_white_add(&w, N, rate);
-    imk_flicker_start(&f, flicker, 1, random, 2);
+    imk_flicker_start(&f, (imk_flicker){flicker, 0}, 1, random, 2);
     imk_flicker_add(&f, N, rate);
     imk_random_walk_start(&k, walk, 1, random, 3);
     imk_random_walk_add(&k, N, rate);

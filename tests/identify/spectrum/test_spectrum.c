@@ -371,7 +371,8 @@ static void test_parameters(void **state)
             x[i] = 9.8;
         CHECK_OK(imk_white_start(&white, truth[1], dt, random, 1));
         imk_white_add(&white, N, x);
-        CHECK_OK(imk_flicker_start(&flicker, truth[2], dt, random, imk_stream(0, 2, 0, 0)));
+        CHECK_OK(imk_flicker_start(&flicker, (imk_flicker){truth[2], 0}, dt, random,
+                                   imk_stream(0, 2, 0, 0)));
         imk_flicker_add(&flicker, N, x);
         CHECK_OK(imk_random_walk_start(&walk, truth[3], dt, random, 3));
         imk_random_walk_add(&walk, N, x);

@@ -37,7 +37,7 @@ static void make(uint32_t run, double b, double k)
     imk_random_normals(random, imk_stream(run, 1, 0, 0), 0, N, white);
     for (size_t i = 0; i < N; i++)
         white[i] *= 10; /* 1/sqrt(dt) */
-    imk_flicker_start(&f, b, DT, random, imk_stream(run, 2, 0, 0));
+    imk_flicker_start(&f, (imk_flicker){b, 0}, DT, random, imk_stream(run, 2, 0, 0));
     imk_flicker_add(&f, N, samples);
     imk_random_walk_start(&w, k, DT, random, imk_stream(run, 3, 0, 0));
     imk_random_walk_add(&w, N, samples);

@@ -552,6 +552,7 @@ static void canonical_text_is_readable(void **state)
                               "    fixed: 0.1 -0.2 0.05 ± 0.01 deg/h\n"
                               "    repeatability: 1 deg/h\n"
                               "  scale_factor:\n"
+                              "    fixed: 0 ppm\n"
                               "    repeatability: 150 ppm\n"
                               "  misalignment: 0.2 mrad\n"
                               "  g_sensitivity: [0.5 0 0 deg/h/g, 0 0.5 0 deg/h/g, 0 0 0.5 "
@@ -564,6 +565,7 @@ static void canonical_text_is_readable(void **state)
                               "  range: 1000 deg/s\n"
                               "accel:\n"
                               "  bias:\n"
+                              "    fixed: 0 mg\n"
                               "    repeatability: 1 mg\n"
                               "  lever_arm: [0 0 0 mm, 5 0 0 mm, 0 5 0 mm]\n"
                               "  noise:\n"
@@ -571,6 +573,38 @@ static void canonical_text_is_readable(void **state)
                               "    velocity_random_walk: 60 ug/sqrt(Hz)\n"
                               "    bias_instability: 30 ug\n");
     free(text);
+}
+
+/* A zero that is stated is not the same as nothing: it is read, written anew, added to a file and
+ * kept by a model that is copied. */
+static void stated_zeros_are_kept(void **state)
+{
+    (void)state;
+    static const char text[] = "imukit: 1\n"
+                               "gyro:\n"
+                               "  bias:\n"
+                               "    repeatability: 0 deg/h\n"
+                               "  misalignment: 0 mrad\n"
+                               "accel: {}\n";
+    imk_model model = parsed(text), bare = parsed("imukit: 1\ngyro: {}\naccel: {}\n");
+    assert_true(imk_model_states(&model, IMK_GYRO, "bias.repeatability"));
+    assert_true(imk_model_states(&model, IMK_GYRO, "misalignment"));
+    assert_false(imk_model_states(&model, IMK_GYRO, "bias.fixed"));
+    assert_false(imk_model_states(&model, IMK_ACCEL, "misalignment"));
+    assert_false(imk_model_states(&bare, IMK_GYRO, "misalignment"));
+    assert_true(imk_model_equal(&model, &bare));
+    char *written = printed(&model, NULL);
+    assert_string_equal(written, text);
+    free(written);
+    imk_document *document = opened("imukit: 1\ngyro:\n  range: 1 deg/s # so\n", &bare);
+    CHECK_OK(imk_model_state_zero(&bare, IMK_GYRO, "bias.repeatability", NULL));
+    written = printed(&bare, document);
+    assert_string_equal(written, "imukit: 1\ngyro:\n  bias:\n    repeatability: 0 deg/h\n"
+                                 "  range: 1 deg/s # so\n");
+    free(written);
+    imk_document_free(document);
+    imk_model floor = parsed("imukit: 1\ngyro: {noise: {allan_floor: 0 deg/h}}\n");
+    assert_true(imk_model_states(&floor, IMK_GYRO, "noise.bias_instability"));
 }
 
 static void perfect_unit_is_short(void **state)
@@ -760,6 +794,7 @@ int main(void)
         cmocka_unit_test(changed_floor_becomes_an_instability),
         cmocka_unit_test(json_document_stays_json),
         cmocka_unit_test(canonical_text_is_readable),
+        cmocka_unit_test(stated_zeros_are_kept),
         cmocka_unit_test(perfect_unit_is_short),
         cmocka_unit_test(invalid_model_is_not_written),
         cmocka_unit_test(strange_texts_survive),

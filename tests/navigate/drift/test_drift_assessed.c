@@ -83,6 +83,7 @@ static double allan_variance(const imk_model *model, double rate, double duratio
     imk_drift_settings settings = imk_drift_default();
     settings.rate = rate;
     settings.latitude = 0.0;
+    settings.attitude_errors = IMK_ATTITUDE_EARTH;
     const imk_drift_moments one = total_at(model, settings, duration),
                             two = total_at(model, settings, 2.0 * duration);
     return (4.0 * one.covariance[TILT_EAST][TILT_EAST] - two.covariance[TILT_EAST][TILT_EAST]) /
@@ -100,7 +101,8 @@ static void flicker_is_that_of_the_samples(void **state)
     model.gyro.noise.bias_instability.value[1] = 1e-6;
     for (size_t n = 10; n <= 1000; n *= 10)
         CHECK_RELATIVE(allan_variance(&model, 10.0, (double)n / 10.0),
-                       imk_flicker_sampled_allan_variance(1e-6, 0.1, n), n == 10 ? 0.02 : 0.01);
+                       imk_flicker_sampled_allan_variance((imk_flicker){1e-6, 0}, 0.1, n),
+                       n == 10 ? 0.02 : 0.01);
 }
 
 /* What is left are the ends of the sum: of n samples T/(n dt). */
@@ -159,6 +161,7 @@ static void sinusoids_add_up_like_samples(void **state)
     imk_drift_settings settings = imk_drift_default();
     settings.rate = 10.0;
     settings.latitude = 0.0;
+    settings.attitude_errors = IMK_ATTITUDE_EARTH;
     static const double frequency[4] = {0.0123, 1.0123, 4.0123, 10.0123}; /* the last one folds */
     for (int i = 0; i < 4; i++) {
         noise->sinusoid[0].frequency.value[1] = frequency[i];
@@ -175,6 +178,7 @@ static void rounding_is_a_twelfth(void **state)
     (void)state;
     imk_drift_settings settings = imk_drift_default();
     settings.latitude = 0.0;
+    settings.attitude_errors = IMK_ATTITUDE_EARTH;
     static const double one_time[1] = {30.0};
     settings.time = one_time;
     settings.time_count = 1;
@@ -416,6 +420,7 @@ static void alignment_is_that_of_the_believed_place(void **state)
     imk_drift_settings settings = imk_drift_default();
     settings.alignment = IMK_ALIGNED_SELF;
     settings.latitude = -0.8;
+    settings.attitude_errors = IMK_ATTITUDE_EARTH;
     settings.initial_sigma[EAST] = 10.0;
     settings.initial_sigma[HEADING] = 1e-3; /* not with self-alignment */
     const double time = 1e-3;

@@ -217,6 +217,7 @@ static void known_terms_do_what_the_mechanisation_does(void **state)
         CHECK_OK(imk_model_select(&model, true, 1, &term[i].name, NULL));
         imk_drift_settings settings = imk_drift_default();
         settings.motion = &d.trajectory;
+        settings.attitude_errors = IMK_ATTITUDE_EARTH;
         settings.vertical = term[i].slaved ? IMK_VERTICAL_SLAVED : IMK_VERTICAL_FREE;
         settings.time = &time;
         settings.time_count = 1;

@@ -123,7 +123,8 @@ static double *plain_rows(const imk_model *model, const imk_simulation *simulati
     return log;
 }
 
-/* C_nb by gravity first: down is against the mean force, east across the mean rate. */
+/* C_nb by gravity first: down is against the mean force, east across the mean rate; then what a
+ * plumb line leans. */
 static imk_quaternion plain_alignment(const double *log, size_t stride, size_t rows,
                                       imk_geodetic place)
 {
@@ -141,12 +142,28 @@ static imk_quaternion plain_alignment(const double *log, size_t stride, size_t r
         c_nb.m[1][i] = east.v[i];
         c_nb.m[2][i] = down.v[i];
     }
+    c_nb = imk_matrix3_multiply(imk_plumb_axes(place), c_nb);
     return imk_quaternion_from_matrix(
         imk_matrix3_multiply(imk_ned_axes(place.latitude, place.longitude), c_nb));
 }
 
+/* C_nb of the display against the true one, by its elements: of R = S T, T about down and S about
+ * an axis across, S takes down to the third column and T is 2 atan(z/w) of the quaternion. */
+static void plain_display(const imk_navigation_state *estimate, const imk_motion_state *truth,
+                          double phi[3])
+{
+    imk_matrix3 c_nb;
+    imk_navigation_state_to_ned(estimate, NULL, NULL, &c_nb);
+    const imk_matrix3 r = imk_matrix3_multiply(c_nb, imk_matrix3_transpose(truth->c_nb));
+    const double sine = hypot(r.m[0][2], r.m[1][2]);
+    const double length = sine > 0.0 ? atan2(sine, r.m[2][2]) / sine : 1.0;
+    phi[0] = -length * r.m[1][2];
+    phi[1] = length * r.m[0][2];
+    phi[2] = atan2(r.m[1][0] - r.m[0][1], r.m[0][0] + r.m[1][1]);
+}
+
 static void plain_errors(const imk_navigation_state *estimate, const imk_motion_state *truth,
-                         double errors[STATES])
+                         imk_attitude_errors stated, double errors[STATES])
 {
     const imk_matrix3 axes = imk_ned_axes(truth->place.latitude, truth->place.longitude);
     const imk_matrix3 to_ned = imk_matrix3_transpose(axes);
@@ -160,6 +177,8 @@ static void plain_errors(const imk_navigation_state *estimate, const imk_motion_
     };
     for (int i = 0; i < STATES; i++)
         errors[i] = part[i / 3].v[i % 3];
+    if (stated == IMK_ATTITUDE_LOCAL)
+        plain_display(estimate, truth, errors + 6);
 }
 
 /* One run on a trajectory that has the standstill of the alignment before it. */
@@ -211,7 +230,7 @@ static void plain_run(const imk_model *model, const imk_drift_settings *s,
              seen++) {
             imk_trajectory_state(trajectory, imk_simulator_true_time(simulator, (int64_t)row),
                                  &truth);
-            plain_errors(&strapdown.state, &truth, errors + seen * STATES);
+            plain_errors(&strapdown.state, &truth, s->attitude_errors, errors + seen * STATES);
         }
     }
     free(log);
@@ -290,6 +309,7 @@ static void test_plain_on_the_road(void **state)
     model.timing.rate_error.value = 5e-5;
     model.timing.jitter.value = 1e-5;
     model.timing.skew.value = 2e-3;
+    settings.attitude_errors = IMK_ATTITUDE_EARTH;
     check_plain(&model, &settings, &c.trajectory);
     free(c.piece);
 }
@@ -503,7 +523,7 @@ static void test_residual_numbers(void **state)
                 parameters[p].sigma[i] = 0.01 * (i + 1);
             }
         drawn = known;
-        imki_drift_residual(&drawn, random, run);
+        imki_drift_residual(&drawn, NULL, random, run);
         for (size_t p = 0; p < sizeof parameters / sizeof *parameters; p++)
             for (int i = 0; i < 3 * parameters[p].columns; i++) {
                 const int columns = parameters[p].columns;
@@ -536,7 +556,7 @@ static void test_residual_distribution(void **state)
     size_t beyond = 0;
     for (uint32_t run = 0; run < RUNS; run++) {
         drawn = known;
-        imki_drift_residual(&drawn, random, run);
+        imki_drift_residual(&drawn, NULL, random, run);
         const double n = drawn.timing.rate_error.value / 2e-5;
         square += n * n;
         mean += n / sqrt(RUNS);
@@ -568,9 +588,10 @@ static void test_initial(void **state)
     settings.alignment_time = 5.0;
     for (int i = 0; i < STATES; i++)
         settings.initial_sigma[i] = i < 3 ? 100.0 : (i < 6 ? 0.1 : 1e-3);
-    for (int kind = 0; kind < 3; kind++) {
-        settings.vertical = kind == 0 ? IMK_VERTICAL_FREE : IMK_VERTICAL_SLAVED;
-        settings.alignment = kind == 2 ? IMK_ALIGNED_SELF : IMK_ALIGNED_GIVEN;
+    for (int kind = 0; kind < 6; kind++) {
+        settings.attitude_errors = kind < 3 ? IMK_ATTITUDE_LOCAL : IMK_ATTITUDE_EARTH;
+        settings.vertical = kind % 3 == 0 ? IMK_VERTICAL_FREE : IMK_VERTICAL_SLAVED;
+        settings.alignment = kind % 3 == 2 ? IMK_ALIGNED_SELF : IMK_ALIGNED_GIVEN;
         double errors[LANES][STATES];
         compute(&model, &settings, 4, 90, LANES, errors[0]);
         for (uint32_t run = 0; run < LANES; run++) {
@@ -580,10 +601,12 @@ static void test_initial(void **state)
                                    imk_stream(90 + run, IMK_TERM_INITIAL, 0, (uint8_t)i), 0, 1,
                                    &expected[i]);
                 expected[i] *= settings.initial_sigma[i];
-                if (kind > 0 && (i == 2 || i == 5))
+                if (kind % 3 > 0 && (i == 2 || i == 5))
                     expected[i] = 0.0;
             }
-            if (kind == 2) { /* the axes of a place some 100 m away, to 1e-4 of the angle */
+            if (kind == 2) /* displayed right, but for the rate of another latitude: 1e-6 */
+                expected[6] = expected[7] = expected[8] = 0.0;
+            if (kind == 5) { /* the axes of a place some 100 m away, to 1e-4 of the angle */
                 double meridian, prime;
                 imk_curvature_radii(settings.latitude, &meridian, &prime);
                 expected[6] = expected[1] / prime;
@@ -591,7 +614,8 @@ static void test_initial(void **state)
                 expected[8] = -expected[1] / prime; /* tan 45 deg */
             }
             for (int i = 0; i < STATES; i++)
-                CHECK_CLOSE(errors[run][i], expected[i], i < 6 ? 1e-8 : (kind == 2 ? 2e-9 : 1e-12));
+                CHECK_CLOSE(errors[run][i], expected[i],
+                            i < 6 ? 1e-8 : (kind % 3 == 2 ? 2e-9 : 1e-12));
         }
     }
 }

@@ -25,7 +25,7 @@ typedef struct drawing {
     imk_figure_builder *figure;
     const char *time_label;
     double unit, length; /* [s], [m] */
-    size_t count;
+    size_t first, count; /* times: those behind the end of the aids, if they end */
     double *time, *below;
 } drawing;
 
@@ -51,7 +51,7 @@ static void add_line(const drawing *d, const imk_drift_case *one, imk_drift_requ
                      const char *label, int color)
 {
     imki_begin_curve(d->figure, label, IMK_CURVE_LINE, color);
-    for (size_t t = 0; t < d->count; t++) {
+    for (size_t t = d->first; t < d->count; t++) {
         const imk_drift_figures *f = &one->figures[t];
         imk_figure_point(d->figure, d->time[t],
                          is_drawn(f) ? imk_drift_required(f, requirement) / d->length
@@ -66,6 +66,8 @@ static void add_runs(const drawing *d, imk_drift_requirement requirement, const 
     const imk_drift_models *r = d->of;
     imki_begin_curve(d->figure, label, IMK_CURVE_POINTS, color);
     for (size_t k = 0; k < r->times->row_count; k++) {
+        if (r->times->row[k] < d->first)
+            continue;
         const double found = imk_drift_required(&r->found[k], requirement) / d->length,
                      low = imk_drift_required(&r->low[k], requirement) / d->length,
                      high = imk_drift_required(&r->high[k], requirement) / d->length;
@@ -105,9 +107,12 @@ static double variance(const imk_drift_moments *m)
     return m->covariance[0][0] + m->covariance[1][1];
 }
 
+/* Of what the terms have by themselves: what correlations add or take is of no single one. */
 static double share_at(const imk_drift_analysis *a, size_t source, size_t t)
 {
-    const double total = variance(&a->total[t]);
+    double total = variance(&a->total[t]);
+    for (size_t k = 0; k < a->cross_count; k++)
+        total -= variance(&a->cross[k].moments[t]);
     return total > 0 ? variance(&a->contribution[source * a->time_count + t]) / total : 0;
 }
 
@@ -158,16 +163,16 @@ static bool has_shares(const imk_drift_case *one, size_t t)
 static void add_bands(const drawing *d, const imk_drift_case *one, const band *bands, size_t count)
 {
     double *below = d->below, rest = 0;
-    for (size_t t = 0; t < d->count; t++)
+    for (size_t t = d->first; t < d->count; t++)
         below[t] = has_shares(one, t) ? 0 : (double)NAN;
     for (size_t b = 0; b <= count; b++) {
         const band *of = b < count ? &bands[b] : &(band){.label = "others", .color = OTHERS};
-        for (size_t t = 0; t < d->count && b == count; t++)
+        for (size_t t = d->first; t < d->count && b == count; t++)
             rest = fmax(rest, 100 - below[t]);
         if (b == count && !(rest > 0.5))
             break;
         imki_begin_curve(d->figure, of->label, IMK_CURVE_LAYER, of->color);
-        for (size_t t = 0; t < d->count; t++) {
+        for (size_t t = d->first; t < d->count; t++) {
             const double above = b < count ? below[t] + 100 * share_at(one->analysis, of->source, t)
                                            : below[t] + (100 - below[t]);
             imk_figure_bar(d->figure, d->time[t], above, below[t], above);
@@ -219,19 +224,39 @@ static bool any_shares(const imk_drift_models *r)
     return false;
 }
 
+/* Where the time begins: at 0, or where the aids end if there is more behind that. */
+static double origin_of(const imk_drift_models *r, size_t *first)
+{
+    const double outage = imk_drift_outage(&r->settings.drift);
+    *first = 0;
+    while (*first < r->times->count && r->times->time[*first] <= outage)
+        (*first)++;
+    if (*first > 0 && *first < r->times->count)
+        return outage;
+    *first = 0;
+    return 0.0;
+}
+
+static const char *time_label(double last, bool without)
+{
+    static const char *const labels[2][3] = {{"time [s]", "time [min]", "time [h]"},
+                                             {"outage [s]", "outage [min]", "outage [h]"}};
+    return labels[without][last >= 7200 ? 2 : last >= 120 ? 1 : 0];
+}
+
 void imki_drift_show_figure(const imk_drift_models *r, bool shares, imk_result *result)
 {
     const size_t count = r->times->count;
-    const double last = r->times->time[count - 1];
+    size_t first = 0;
+    const double origin = origin_of(r, &first), last = r->times->time[count - 1] - origin;
     const bool any = any_shares(r);
     drawing d = {.of = r,
-                 .time_label = last >= 7200  ? "time [h]"
-                               : last >= 120 ? "time [min]"
-                                             : "time [s]",
+                 .time_label = time_label(last, first > 0),
                  .unit = last >= 7200  ? 3600
                          : last >= 120 ? 60
                                        : 1,
                  .length = largest(r) >= 2000 ? 1000 : 1,
+                 .first = first,
                  .count = count,
                  .time =
                      result ? imki_arena_take(&result->arena, 2 * count * sizeof *d.time) : NULL};
@@ -239,7 +264,7 @@ void imki_drift_show_figure(const imk_drift_models *r, bool shares, imk_result *
         return;
     d.below = d.time + count;
     for (size_t t = 0; t < count; t++)
-        d.time[t] = r->times->time[t] / d.unit;
+        d.time[t] = (r->times->time[t] - origin) / d.unit;
     d.figure = imk_result_figure(
         result, r->model_count > 1 ? "Comparison" : r->name[0], any ? 1 + r->case_count : 1,
         "CEP is the radius of the circle that holds half of all outcomes, R95 that of 95 %. Shares "

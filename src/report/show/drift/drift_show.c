@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Drift as a result: how the error grows, and which terms cause it. */
 #include "drift_show_internal.h"
+#include "unstated_show_internal.h"
 
 #include "report/result_internal.h"
 
@@ -48,6 +49,16 @@ static void show_runs_data(const imk_drift_models *r, imk_result *result)
         show_figures("figures", &r->found[k], result);
         show_figures("lower", &r->low[k], result);
         show_figures("upper", &r->high[k], result);
+        if (r->nees_degrees > 0) {
+            double low, high;
+            imki_drift_nees_due(r, k, &low, &high);
+            imk_result_object(result, "nees");
+            imk_result_number(result, "mean", r->nees[k]);
+            imk_result_number(result, "degrees", r->nees_degrees);
+            imk_result_number(result, "lower", low);
+            imk_result_number(result, "upper", high);
+            imk_result_end(result);
+        }
         imk_result_end(result);
     }
     imk_result_end(result);
@@ -73,7 +84,18 @@ static void show_budget_data(const imk_drift_case *one, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_case(const imk_drift_models *r, const imk_drift_case *one, imk_result *result)
+/* What was assumed of the model of a case. */
+static const imk_unstated *assumed_of(const imk_drift_models *r, const imk_drift_shown *shown,
+                                      const imk_drift_case *one)
+{
+    size_t m = 0;
+    while (r->model[m] != one->model)
+        m++;
+    return shown->assumed ? &shown->assumed[m] : NULL;
+}
+
+static void show_case(const imk_drift_models *r, const imk_drift_shown *shown,
+                      const imk_drift_case *one, imk_result *result)
 {
     static const char *const validity[] = {"linear", "rough", "no_position"};
     const imk_drift_times *times = r->times;
@@ -87,12 +109,20 @@ static void show_case(const imk_drift_models *r, const imk_drift_case *one, imk_
         imk_result_quantity(result, "time", times->time[times->row[k]], "s");
         imk_result_text(result, "validity", validity[imk_drift_validity_of(f)]);
         show_figures("figures", f, result);
+        if (one->analysis->believed) {
+            const imk_drift_figures own =
+                imk_drift_figures_of(&one->analysis->believed[times->row[k]]);
+            show_figures("believed", &own, result);
+        }
         imk_result_end(result);
     }
     imk_result_end(result);
     imk_result_quantity(result, "budget_time", times->time[one->time], "s");
     show_budget_data(one, result);
+    imk_result_number(result, "correlation_share", one->correlation_share);
     imki_show_texts(result, "omitted", one->analysis->omitted_count, one->analysis->omitted);
+    imki_show_missing_data(one->missing_count, one->missing, result);
+    imki_show_assumed_data(assumed_of(r, shown, one), result);
     imk_result_end(result);
 }
 
@@ -104,12 +134,19 @@ static void show_inputs(const imk_drift_models *r, const imk_drift_shown *shown,
     imki_show_texts(result, "models", r->model_count, r->name);
     imk_result_text(result, "motion", shown->motion);
     imk_result_quantity(result, "rate", s->rate, "Hz");
-    imk_result_text(result, "vertical", s->vertical == IMK_VERTICAL_FREE ? "free" : "slaved");
+    imk_result_text(result, "vertical",
+                    imk_drift_vertical(s) == IMK_VERTICAL_FREE ? "free" : "slaved");
     imk_result_text(result, "aligned", s->alignment == IMK_ALIGNED_SELF ? "self" : "given");
+    imk_result_text(result, "attitude_errors",
+                    s->attitude_errors == IMK_ATTITUDE_EARTH ? "earth" : "local");
     imk_result_array(result, "initial_sigma");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
         imk_result_quantity(result, NULL, s->initial_sigma[i], units[i / 3]);
     imk_result_end(result);
+    if (s->gravity_deflection > 0) {
+        imk_result_quantity(result, "gravity_deflection", s->gravity_deflection, "m/s^2");
+        imk_result_quantity(result, "gravity_distance", s->gravity_distance, "m");
+    }
     if (!r->settings.drift.motion) {
         imk_result_quantity(result, "latitude", s->latitude, "rad");
         imk_result_quantity(result, "height", s->height, "m");
@@ -119,6 +156,7 @@ static void show_inputs(const imk_drift_models *r, const imk_drift_shown *shown,
     }
     if (s->alignment == IMK_ALIGNED_SELF)
         imk_result_quantity(result, "alignment_time", s->alignment_time, "s");
+    imki_drift_show_aids(r, shown->filter_model, result);
     if (r->found)
         imk_result_count(result, "seed", (long long)shown->seed);
     imk_result_end(result);
@@ -130,7 +168,7 @@ static void show_data(const imk_drift_models *r, const imk_drift_shown *shown, i
     imk_result_object(result, "result");
     imk_result_array(result, "models");
     for (size_t c = 0; c < r->case_count; c++)
-        show_case(r, &r->cases[c], result);
+        show_case(r, shown, &r->cases[c], result);
     imk_result_end(result);
     if (r->found)
         show_runs_data(r, result);
@@ -150,11 +188,18 @@ static void conditions_of(const imk_drift_models *r, const char *motion, imki_te
     else
         imki_text_add(text, "At rest at %.4g deg %s", fabs(s->latitude) / imk_unit_of("deg").scale,
                       s->latitude < 0 ? "south" : "north");
-    imki_text_add(text, "; attitude %s at the start, height %s.",
+    imki_text_put(text, "; ");
+    imki_drift_aids_words(r, text);
+    imki_text_add(text, "%sattitude %s at the start, height %s.%s", s->aid_count > 0 ? "; " : "",
                   s->alignment == IMK_ALIGNED_SELF ? "found by the unit itself"
                   : s->initial_sigma[6] + s->initial_sigma[7] + s->initial_sigma[8] > 0 ? "given"
                                                                                         : "true",
-                  s->vertical == IMK_VERTICAL_FREE ? "free" : "held by other means");
+                  imk_drift_vertical(s) == IMK_VERTICAL_SLAVED ? "held by other means"
+                  : s->vertical == IMK_VERTICAL_FREE           ? "free"
+                                                               : "from the aids",
+                  s->attitude_errors == IMK_ATTITUDE_EARTH
+                      ? " Tilt and heading are errors against Earth-fixed axes."
+                      : "");
 }
 
 static void show_title(const imk_drift_models *r, const imk_drift_shown *shown, imk_result *result)
@@ -186,14 +231,34 @@ static void show_deciding(const imk_drift_models *r, imk_result *result)
         const imk_drift_case *one = &r->cases[c];
         char text[IMKI_DRIFT_TIME];
         if (one->share_count > 0 && one->share[0].share > 0)
-            imk_result_line(
-                result, "%s: after %s %s contributes %.0f %% of the variance", one->label,
-                imki_drift_time(r->times->time[one->time], IMK_DRIFT_LINEAR, text),
-                one->analysis->source[one->share[0].source].text, 100 * one->share[0].share);
+            imk_result_line(result, "%s: after %s %s contributes %.0f %% of the variance",
+                            one->label, imki_drift_moment(r, r->times->time[one->time], text),
+                            one->analysis->source[one->share[0].source].text,
+                            100 * one->share[0].share);
     }
 }
 
 /* ---- all ---- */
+
+/* What stands in place of what is not stated, and what is missing. */
+static void show_unstated(const imk_drift_models *r, const imk_drift_shown *shown,
+                          imk_result *result)
+{
+    if (shown->assumed)
+        imk_result_gap(result);
+    for (size_t m = 0; m < r->model_count && shown->assumed; m++)
+        imki_show_assumed(&shown->assumed[m], r->name[m], result);
+    for (size_t c = 0; c < r->case_count; c++) {
+        const imk_drift_case *one = &r->cases[c];
+        if (one->missing_count == 0)
+            continue;
+        imk_result_line(result,
+                        "\nThe figures of %s are lower bounds. With what is typical of its "
+                        "class, these would have a part in the mean square of an error:",
+                        one->label);
+        imki_show_missing(one->missing_count, one->missing, result);
+    }
+}
 
 /* The page shows the shares too; a plot of letters has no shades for them. */
 static void show_figure(const imk_drift_models *r, imk_result *result)
@@ -214,6 +279,7 @@ void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *shown, imk
                                                    : "Against time");
     imk_result_for(result, IMK_FOR_BOTH);
     imki_drift_show_growth(r, result);
+    show_unstated(r, shown, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (r->model_count > 1)
         show_deciding(r, result);
@@ -222,9 +288,10 @@ void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *shown, imk
     if (r->found) {
         imk_result_for(result, IMK_FOR_TERMINAL);
         imk_result_line(result,
-                        "\nMonte Carlo of %s: %llu runs of the whole mechanisation; in brackets "
-                        "95 %% intervals.",
-                        imki_drift_last_case(r)->label, (unsigned long long)r->run_count);
+                        "\nMonte Carlo of %s: %llu runs of the whole %s; in brackets 95 %% "
+                        "intervals.",
+                        imki_drift_last_case(r)->label, (unsigned long long)r->run_count,
+                        r->nees_degrees > 0 ? "filter and its aids" : "mechanisation");
         imk_result_for(result, IMK_FOR_PAGE);
         imk_result_heading(result, "Monte Carlo");
         imk_result_for(result, IMK_FOR_BOTH);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The answer to --want as a result. */
 #include "drift_show_internal.h"
+#include "unstated_show_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,6 +21,9 @@ void imki_drift_show_answer_data(const imk_drift_models *r, imk_result *result)
     imk_result_quantity(result, "time", want->time, "s");
     imk_result_quantity(result, "present", need->present, unit);
     imk_result_number(result, "all", need->all);
+    imk_result_flag(result, "lower_bound", imki_drift_last_case(r)->missing_count > 0);
+    if (r->settings.drift.aid_count > 0)
+        imk_result_text(result, "gains", want->retuned ? "retuned" : "held");
     imk_result_array(result, "terms");
     for (size_t k = 0; k < a->source_count; k++) {
         imk_result_object(result, NULL);
@@ -38,8 +42,9 @@ void imki_drift_show_answer_data(const imk_drift_models *r, imk_result *result)
         imk_result_text(result, "name", c->device->name);
         imk_result_flag(result, "preset", c->device->is_preset);
         imk_result_quantity(result, "figure", imk_drift_required(&c->figures, want->figure), unit);
-        imk_result_flag(result, "meets", imki_drift_would_do(r, c, c->device->is_preset));
-        imk_result_flag(result, "bias_stated", !c->no_bias);
+        imk_result_flag(result, "meets",
+                        c->missing_count == 0 && imki_drift_would_do(r, c, c->device->is_preset));
+        imki_show_missing_data(c->missing_count, c->missing, result);
         imk_result_end(result);
     }
     imk_result_end(result);
@@ -71,6 +76,10 @@ static void add_value(const imk_drift_case *one, const imk_result *model, size_t
     imki_text text = {.bytes = NULL};
     if (strncmp(name, "initial.", 8) == 0)
         add_initial(&one->settings, name, factor, &text);
+    else if (strcmp(name, "gravity.deflection") == 0) /* a setting, too */
+        imki_text_add(&text, "%.3g ug", one->settings.gravity_deflection * factor / 9.80665e-6);
+    else if (strncmp(name, "aid.", 4) == 0)
+        imki_drift_aid_value(&one->settings, name, factor, &text);
     else
         imki_drift_term_value(model, name, one->settings.compensated, factor, &text);
     imk_table_add(table, "%s", text.size > 0 ? text.bytes : "");
@@ -121,51 +130,65 @@ static void show_terms(const imk_drift_models *r, const imk_result *model, imk_r
 
 /* ---- devices ---- */
 
+/* Lists of devices, each with what is said above it. */
+typedef enum device_list { MEETING, PERHAPS, PRESETS, LISTS } device_list;
+
+static void begin_list(device_list list, imk_result *result)
+{
+    static const char *const titles[LISTS] = {
+        "Devices of the catalogue that meet the requirement",
+        "Devices that meet it at best: their sources leave out what matters",
+        "Grade presets that meet the requirement"};
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    imk_result_line(result, "\n%s:", titles[list]);
+    imk_result_for(result, IMK_FOR_PAGE);
+    imk_result_heading(result, titles[list]);
+    imk_result_for(result, IMK_FOR_BOTH);
+}
+
+static void add_missing(const imk_drift_candidate *c, imk_table *table)
+{
+    imki_text names = {.bytes = NULL};
+    imki_missing_names(c->missing_count, c->missing, &names);
+    imk_table_add(table, "not stated: %s", names.size > 0 ? names.bytes : "");
+    free(names.bytes);
+}
+
 /* The least that does comes first. */
-static void show_devices(const imk_drift_models *r, const imk_drift_answer *answer, bool presets,
-                         imk_result *result)
+static void show_devices(const imk_drift_models *r, const imk_drift_answer *answer,
+                         device_list list, imk_result *result)
 {
     imk_table *table = NULL;
     for (size_t i = answer->candidate_count; i-- > 0;) {
         const imk_drift_candidate *c = &answer->candidate[i];
         char text[IMK_READABLE_SIZE];
-        if (!imki_drift_would_do(r, c, presets))
+        if (!imki_drift_would_do(r, c, list == PRESETS) ||
+            (list != PRESETS && (c->missing_count > 0) != (list == PERHAPS)))
             continue;
         if (!table) {
-            const char *what = presets ? "Grade presets" : "Devices of the catalogue";
-            imk_result_for(result, IMK_FOR_TERMINAL);
-            imk_result_line(result, "\n%s that meet the requirement:", what);
-            imk_result_for(result, IMK_FOR_PAGE);
-            imk_result_heading(result, presets
-                                           ? "Grade presets that meet the requirement"
-                                           : "Devices of the catalogue that meet the requirement");
-            imk_result_for(result, IMK_FOR_BOTH);
+            begin_list(list, result);
             table = imk_result_table(result, 2);
         }
         const double figure = imk_drift_required(&c->figures, r->settings.want.figure);
-        imk_table_row(table, "%s%s\t%s\t%s", c->device->name, c->no_bias ? " *" : "",
+        imk_table_row(table, "%s\t%s%s\t%s", c->device->name, list == PERHAPS ? "at least " : "",
                       imk_readable_quantity(figure, &r->settings.want.unit, text),
-                      presets ? "grade preset" : c->device->grade);
+                      list == PRESETS ? "grade preset" : c->device->grade);
+        if (list == PERHAPS)
+            add_missing(c, table);
     }
     imk_result_for(result, IMK_FOR_TERMINAL);
-    if (!table && !presets)
-        imk_result_line(result, "\nNo device of the catalogue meets the requirement.");
+    if (!table && list == MEETING)
+        imk_result_line(result, "\nNo device of the catalogue is known to meet the requirement.");
 }
 
 static void show_remarks(const imk_drift_models *r, const imk_drift_answer *answer,
                          imk_result *result)
 {
-    bool starred = false;
     size_t left_out = 0;
-    for (size_t i = 0; i < answer->candidate_count; i++) {
-        const imk_drift_candidate *c = &answer->candidate[i];
-        left_out += !c->usable;
-        starred = starred || (c->no_bias && imki_drift_would_do(r, c, c->device->is_preset));
-    }
-    if (starred)
-        imk_result_line(result,
-                        "* The source states no run-to-run bias of gyros or accelerometers: the "
-                        "device is this good only after a calibration at every start.");
+    for (size_t i = 0; i < answer->candidate_count; i++)
+        left_out += !answer->candidate[i].usable;
+    if (r->settings.assume)
+        imk_result_line(result, "What sources of devices do not state is assumed, too.");
     if (left_out > 0)
         imk_result_line(result, "%zu entries have no complete set of gyros and accelerometers.",
                         left_out);
@@ -179,13 +202,17 @@ void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, 
     const imk_drift_wanted *want = &r->settings.want;
     const imk_drift_allocation *need = &answer->allocation;
     const bool met = need->present <= want->goal;
+    const bool at_best = met && imki_drift_last_case(r)->missing_count > 0;
+    const char *word = at_best ? "Met at best" : met ? "Met" : "Not met";
     char title[160], factor[120] = "no term contributes to it.";
     char now[IMK_READABLE_SIZE], goal[IMK_READABLE_SIZE], time[IMKI_DRIFT_TIME];
     snprintf(title, sizeof title, "Wanted: %s %s after %s",
              imk_drift_requirement_name(want->figure),
              imk_readable_quantity(want->goal, &want->unit, goal),
-             imki_drift_time(want->time, IMK_DRIFT_LINEAR, time));
-    if (!met)
+             imki_drift_moment(r, want->time, time));
+    if (!met && !(need->all > 0))
+        snprintf(factor, sizeof factor, "no improvement of its terms meets the requirement.");
+    else if (!met)
         snprintf(factor, sizeof factor,
                  "all terms would have to be %.3g times smaller. The smallest improvement that "
                  "meets the requirement:",
@@ -193,18 +220,25 @@ void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, 
     else if (!isinf(need->all))
         snprintf(factor, sizeof factor, "all terms may be %.3g times larger.", need->all);
     imk_result_for(result, IMK_FOR_TERMINAL);
-    imk_result_line(result, "\n" IMK_BOLD "%s." IMK_PLAIN " %s: the figure is %s; %s", title,
-                    met ? "Met" : "Not met", imk_readable_quantity(need->present, &want->unit, now),
-                    factor);
+    imk_result_line(result, "\n" IMK_BOLD "%s." IMK_PLAIN " %s: the figure is %s; %s", title, word,
+                    imk_readable_quantity(need->present, &want->unit, now), factor);
+    if (!met && r->settings.drift.aid_count > 0)
+        imk_result_line(result, "%s",
+                        want->retuned ? "The filter is made anew for the improved terms."
+                                      : "The filter keeps its gains; --gains retuned makes it anew "
+                                        "for the improved terms.");
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, title);
     imk_result_finding(
-        result, met ? 0 : 1,
-        met ? "Met."
+        result, met && !at_best ? 0 : 1,
+        at_best ? "Met at best: the model does not state all that matters."
+        : met
+            ? "Met."
             : "Not met. The smallest improvement that meets the requirement, counted in factors:");
     imk_result_for(result, IMK_FOR_BOTH);
     show_terms(r, model, result);
-    show_devices(r, answer, false, result);
-    show_devices(r, answer, true, result);
+    show_devices(r, answer, MEETING, result);
+    show_devices(r, answer, PERHAPS, result);
+    show_devices(r, answer, PRESETS, result);
     show_remarks(r, answer, result);
 }

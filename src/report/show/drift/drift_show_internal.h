@@ -10,10 +10,28 @@ enum { IMKI_DRIFT_TIME = 80 };
 /* "10 min ~", where figures are rough. @return text */
 const char *imki_drift_time(double time, imk_drift_validity validity, char text[IMKI_DRIFT_TIME]);
 
+/* ---- drift_show_aids.c ---- */
+
+/* A time of the table: "+1 min" behind the end of the aids, "10 min, aided" before it. */
+const char *imki_drift_row_label(const imk_drift_models *r, double time,
+                                 imk_drift_validity validity, char text[IMKI_DRIFT_TIME]);
+/* In a sentence: "1 min of outage", or "10 min". */
+const char *imki_drift_moment(const imk_drift_models *r, double time, char text[IMKI_DRIFT_TIME]);
+/* "aided by position 1 m, velocity 0.05 m/s at 1 Hz until 10 min"; nothing without aids. */
+void imki_drift_aids_words(const imk_drift_models *r, imki_text *text);
+void imki_drift_show_aids(const imk_drift_models *r, const char *filter_model, imk_result *result);
+
+/* The 1 sigma behind a source "aid.…", times a factor; nothing for a lever arm. */
+void imki_drift_aid_value(const imk_drift_settings *settings, const char *source, double factor,
+                          imki_text *text);
+
 /* Each table behind an empty line. Growth of one case, two of one model, or several models. */
 void imki_drift_show_growth(const imk_drift_models *r, imk_result *result);
 void imki_drift_show_budget(const imk_drift_models *r, const imk_drift_case *one,
                             imk_result *result);
+/* The 95 % interval of the mean normalised error squared of a row, if the filter knows the truth.
+ */
+void imki_drift_nees_due(const imk_drift_models *r, size_t row, double *low, double *high);
 void imki_drift_show_runs(const imk_drift_models *r, imk_result *result);
 /* How the runs compare with the covariance. */
 void imki_drift_show_ratios(const imk_drift_models *r, imk_result *result);

@@ -2,6 +2,8 @@
 /* Drift in tables: growth, budgets, runs. */
 #include "drift_show_internal.h"
 
+#include "imukit/distributions.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -20,10 +22,11 @@ const char *imki_drift_time(double time, imk_drift_validity validity, char text[
     return text;
 }
 
-static void begin_row(imk_table *table, double time, imk_drift_validity validity)
+static void begin_row(const imk_drift_models *r, imk_table *table, double time,
+                      imk_drift_validity validity)
 {
     char text[IMKI_DRIFT_TIME];
-    imk_table_row(table, "%s", imki_drift_time(time, validity, text));
+    imk_table_row(table, "%s", imki_drift_row_label(r, time, validity, text));
 }
 
 static void add_figure(imk_table *table, const imk_drift_figures *f,
@@ -54,18 +57,21 @@ static void add_miles(imk_table *table, double value)
 
 static void show_one(const imk_drift_models *r, const imk_drift_case *one, imk_result *result)
 {
-    const bool is_free = r->settings.drift.vertical == IMK_VERTICAL_FREE;
-    imk_table *table = begin_table(result, is_free ? 0x3FEU : 0xFEU);
-    if (is_free)
-        imk_table_row(table, "time\tCEP\t\tR95\tDRMS\theight\tvelocity\tclimb\ttilt\theading");
-    else
-        imk_table_row(table, "time\tCEP\t\tR95\tDRMS\tvelocity\ttilt\theading");
+    const bool is_free = imk_drift_vertical(&r->settings.drift) == IMK_VERTICAL_FREE;
+    const imk_drift_moments *believed = one->analysis->believed;
+    imk_table *table = begin_table(result, is_free ? 0x7FEU : 0x1FEU);
+    imk_table_row(table, "%s\tCEP\t\tR95\tDRMS",
+                  one->missing_count > 0 ? "at least, after" : "time");
+    imk_table_add(table,
+                  is_free ? "height\tvelocity\tclimb\ttilt\theading" : "velocity\ttilt\theading");
+    if (believed)
+        imk_table_add(table, "CEP believed");
     for (size_t k = 0; k < r->times->row_count; k++) {
         const size_t t = r->times->row[k];
         const imk_drift_figures *f = &one->figures[t];
         const imk_drift_validity validity = imk_drift_validity_of(f);
         char text[IMK_READABLE_SIZE];
-        begin_row(table, r->times->time[t], validity);
+        begin_row(r, table, r->times->time[t], validity);
         if (validity == IMK_DRIFT_LOST) {
             imk_table_add(table, "no position");
             continue;
@@ -81,6 +87,10 @@ static void show_one(const imk_drift_models *r, const imk_drift_case *one, imk_r
             imk_table_add(table, "%s", imk_readable_figure(IMK_REQUIRED_VELOCITY, f->climb, text));
         add_figure(table, f, IMK_REQUIRED_TILT);
         add_figure(table, f, IMK_REQUIRED_HEADING);
+        if (believed) {
+            const imk_drift_figures own = imk_drift_figures_of(&believed[t]);
+            add_figure(table, &own, IMK_REQUIRED_CEP);
+        }
     }
 }
 
@@ -90,13 +100,16 @@ static void show_both(const imk_drift_models *r, imk_result *result)
     static const imk_drift_requirement shown[] = {IMK_REQUIRED_CEP, IMK_REQUIRED_R95,
                                                   IMK_REQUIRED_VELOCITY, IMK_REQUIRED_HEADING};
     imk_table *table = begin_table(result, 0x1FEU);
-    imk_table_row(table, "time\tCEP before\tafter\tR95 before\tafter\tvelocity before\tafter\t"
-                         "heading before\tafter");
+    imk_table_row(table,
+                  "%s\tCEP before\tafter\tR95 before\tafter\tvelocity before\tafter\t"
+                  "heading before\tafter",
+                  r->cases[0].missing_count + r->cases[1].missing_count > 0 ? "at least, after"
+                                                                            : "time");
     for (size_t k = 0; k < r->times->row_count; k++) {
         const size_t t = r->times->row[k];
         const imk_drift_figures *f[2] = {&r->cases[0].figures[t], &r->cases[1].figures[t]};
         const imk_drift_validity v[2] = {imk_drift_validity_of(f[0]), imk_drift_validity_of(f[1])};
-        begin_row(table, r->times->time[t], v[0] > v[1] ? v[0] : v[1]);
+        begin_row(r, table, r->times->time[t], v[0] > v[1] ? v[0] : v[1]);
         for (size_t cell = 0; cell < 2 * sizeof shown / sizeof shown[0]; cell++)
             if (v[cell % 2] != IMK_DRIFT_LOST)
                 add_figure(table, f[cell % 2], shown[cell / 2]);
@@ -110,10 +123,11 @@ static void show_several(const imk_drift_models *r, imk_result *result)
     imk_table *table = begin_table(result, (1U << (1 + r->case_count)) - 2);
     imk_table_row(table, "CEP after");
     for (size_t c = 0; c < r->case_count; c++)
-        imk_table_add(table, "%.30s", r->cases[c].label);
+        imk_table_add(table, "%.30s%s", r->cases[c].label,
+                      r->cases[c].missing_count > 0 ? ", at least" : "");
     for (size_t k = 0; k < r->times->row_count; k++) {
         const size_t t = r->times->row[k];
-        begin_row(table, r->times->time[t], IMK_DRIFT_LINEAR);
+        begin_row(r, table, r->times->time[t], IMK_DRIFT_LINEAR);
         for (size_t c = 0; c < r->case_count; c++) {
             const imk_drift_figures *f = &r->cases[c].figures[t];
             const imk_drift_validity validity = imk_drift_validity_of(f);
@@ -166,6 +180,9 @@ static void show_shares(const imk_drift_models *r, const imk_drift_case *one, im
         imk_table_add(table, "< 0.1 %%");
     else if (rest_count > 0)
         imk_table_add(table, "%.1f %%", 100 * rest);
+    if (fabs(one->correlation_share) >= 0.0005)
+        imk_table_row(table, "correlation of calibrated values\t%.1f %%",
+                      100 * one->correlation_share);
 }
 
 /* The moments of a source, or of all sources together (index after the last), if its shift is at
@@ -211,7 +228,7 @@ void imki_drift_show_budget(const imk_drift_models *r, const imk_drift_case *one
         shifts = shifts || shift_of(one, k);
     const imk_audience audience = r->model_count > 1 ? IMK_FOR_PAGE : IMK_FOR_BOTH;
     char title[240], time[IMKI_DRIFT_TIME];
-    imki_drift_time(r->times->time[one->time], IMK_DRIFT_LINEAR, time);
+    imki_drift_moment(r, r->times->time[one->time], time);
     snprintf(title, sizeof title, "Contributions after %s: %s", time, one->label);
     imk_result_for(result, IMK_FOR_PAGE);
     if (shares)
@@ -244,19 +261,33 @@ static void add_interval(imk_table *table, imk_drift_requirement requirement, do
                   isinf(high) ? "?" : imk_readable_number(high / unit.scale, c));
 }
 
+void imki_drift_nees_due(const imk_drift_models *r, size_t row, double *low, double *high)
+{
+    const double n = (double)r->used[row], degrees = n * r->nees_degrees;
+    *low = n > 0 ? imk_chi_square_quantile(0.025, degrees) / n : (double)NAN;
+    *high = n > 0 ? imk_chi_square_quantile(0.975, degrees) / n : (double)NAN;
+}
+
 void imki_drift_show_runs(const imk_drift_models *r, imk_result *result)
 {
     static const imk_drift_requirement shown[] = {IMK_REQUIRED_CEP, IMK_REQUIRED_R95,
                                                   IMK_REQUIRED_VELOCITY, IMK_REQUIRED_HEADING};
     imk_table *table = begin_table(result, 0);
     imk_table_row(table, "time\truns\tCEP\tR95\tvelocity\theading");
+    if (r->nees_degrees > 0)
+        imk_table_add(table, "NEES\tdue");
     for (size_t k = 0; k < r->times->row_count; k++) {
-        begin_row(table, imki_drift_row_time(r, k), IMK_DRIFT_LINEAR);
+        begin_row(r, table, imki_drift_row_time(r, k), IMK_DRIFT_LINEAR);
         imk_table_add(table, "%zu", r->used[k]);
         for (size_t c = 0; c < sizeof shown / sizeof shown[0]; c++)
             add_interval(table, shown[c], imk_drift_required(&r->found[k], shown[c]),
                          imk_drift_required(&r->low[k], shown[c]),
                          imk_drift_required(&r->high[k], shown[c]));
+        if (r->nees_degrees > 0) {
+            double low, high;
+            imki_drift_nees_due(r, k, &low, &high);
+            imk_table_add(table, "%.3g\t%.3g to %.3g", r->nees[k], low, high);
+        }
     }
 }
 
@@ -269,7 +300,7 @@ void imki_drift_show_ratios(const imk_drift_models *r, imk_result *result)
     for (size_t k = 0; k < r->times->row_count; k++) {
         const size_t t = r->times->row[k];
         const imk_drift_figures *f = &imki_drift_last_case(r)->figures[t];
-        begin_row(table, r->times->time[t], imk_drift_validity_of(f));
+        begin_row(r, table, r->times->time[t], imk_drift_validity_of(f));
         for (size_t c = 0; c < 3; c++) {
             const double linear = imk_drift_required(f, shown[c]),
                          ratio = imk_drift_required(&r->found[k], shown[c]) / linear;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What makes figures of drift doubtful. */
 #include "drift_show_internal.h"
+#include "unstated_show_internal.h"
 
 #include "report/result_internal.h"
 
@@ -46,6 +47,19 @@ static void warn_of_omitted(const imk_drift_case *one, imk_verdict *v)
     free(list.bytes);
 }
 
+/* Figures that something material is missing from. */
+static void warn_of_missing(const imk_drift_case *one, imk_verdict *v)
+{
+    imki_text list = {.bytes = NULL};
+    imki_missing_names(one->missing_count, one->missing, &list);
+    if (list.size > 0)
+        warn(v, "lower_bound",
+             "%s: the figures are lower bounds, because the model does not state %.500s; state "
+             "them, 0 where they are 0, or assume what is typical with --assume-class own",
+             one->label, list.bytes);
+    free(list.bytes);
+}
+
 /* The time of the first row of the table with this validity. */
 static const char *first_time(const imk_drift_models *r, const imk_drift_case *one,
                               imk_drift_validity validity, char text[IMKI_DRIFT_TIME])
@@ -53,7 +67,7 @@ static const char *first_time(const imk_drift_models *r, const imk_drift_case *o
     const imk_drift_times *times = r->times;
     for (size_t k = 0; k < times->row_count; k++)
         if (imk_drift_validity_of(&one->figures[times->row[k]]) == validity)
-            return imki_drift_time(times->time[times->row[k]], IMK_DRIFT_LINEAR, text);
+            return imki_drift_moment(r, times->time[times->row[k]], text);
     return NULL;
 }
 
@@ -110,7 +124,7 @@ static void warn_of_runs(const imk_drift_models *r, imk_verdict *v)
     warn(v, "disagreement",
          "from %s on the runs differ from the covariance by more than %g %% (%s): the runs are "
          "right, and the linear theory leaves something out",
-         imki_drift_time(imki_drift_row_time(r, row), IMK_DRIFT_LINEAR, text), 100 * tolerance,
+         imki_drift_moment(r, imki_drift_row_time(r, (size_t)row), text), 100 * tolerance,
          imk_drift_requirement_name(requirement));
 }
 
@@ -122,6 +136,7 @@ imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result)
     for (size_t c = 0; c < r->case_count; c++) {
         if (c == 0 || r->cases[c].model != r->cases[c - 1].model)
             warn_of_omitted(&r->cases[c], &v);
+        warn_of_missing(&r->cases[c], &v);
         warn_of_range(r, &r->cases[c], &v);
     }
     if (r->found)

@@ -128,6 +128,14 @@ static void add_model(const imk_graded *one, const char *name, int map, imki_tex
         add_line(note, line);
         return;
     }
+    const bool is_best =
+        map == IMK_GRADE_MAP_ACCEL ? one->table.accel_at_best : one->table.gyro_at_best;
+    if (is_best) {
+        snprintf(line, sizeof line,
+                 "%.40s does not state all of its bias: its place is the best that is possible.",
+                 name);
+        add_line(note, line);
+    }
     for (int k = 0; k < 2; k++)
         if (place.how[k] == IMKI_OUTSIDE ||
             (place.how[k] == IMKI_UNSTATED && !(k == 1 && has_prices(map))))

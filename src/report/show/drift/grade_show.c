@@ -2,9 +2,11 @@
 /* A grade as a result: classes, errors of position and what limits them, in figures, messages and
  * tables. */
 #include "grade_show_internal.h"
+#include "unstated_show_internal.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 static const char assumption[] =
     "Computed by covariance from all terms of the model: at rest at 45 deg N, level, 100 Hz, the "
@@ -34,13 +36,27 @@ static const char *name_or(bool known, imk_grade grade, const char *otherwise)
     return known ? grade_name(grade) : otherwise;
 }
 
+static const char *at_best(bool holds)
+{
+    return holds ? "at best " : "";
+}
+
+/* A class, unless it is only the best that is possible. */
+static void show_class(const char *key, const char *best_key, bool known, bool is_best,
+                       imk_grade grade, imk_result *result)
+{
+    const char *name = name_or(known, grade, NULL);
+    imk_result_text(result, key, is_best ? NULL : name);
+    imk_result_text(result, best_key, is_best ? name : NULL);
+}
+
 /* ---- data ---- */
 
-static void show_way(const char *key, const imk_grade_way *p, imk_result *result)
+static void show_way(const char *key, const imk_grade_way *p, bool is_best, imk_result *result)
 {
     static const char *const validity[] = {"linear", "rough", "no position"};
     imk_result_object(result, key);
-    imk_result_text(result, "class", name_or(p->grade != IMK_GRADE_NONE, p->grade, NULL));
+    show_class("class", "class_at_best", p->grade != IMK_GRADE_NONE, is_best, p->grade, result);
     imk_result_array(result, "times");
     for (size_t t = 0; t < IMK_GRADE_TIMES; t++) {
         imk_result_object(result, NULL);
@@ -75,7 +91,8 @@ static void show_computed(const imk_graded *one, imk_result *result)
     if (!imki_begin_object(result, "position", !one->no_position))
         return;
     for (int way = 0; way < IMK_GRADE_WAYS; way++)
-        show_way(names[way], &one->way[way], result);
+        show_way(names[way], &one->way[way], one->missing_count > 0, result);
+    imki_show_missing_data(one->missing_count, one->missing, result);
     show_shares("shares", one->share_count, one->share, "share", result);
     if (imki_begin_object(result, "next", one->next != IMK_GRADE_NONE)) {
         imk_result_text(result, "class", grade_name(one->next));
@@ -87,25 +104,27 @@ static void show_computed(const imk_graded *one, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_data(const imk_graded *one, const char *name, imk_result *result)
+static void show_data(const imk_graded *one, const char *name, const imk_unstated *assumed,
+                      imk_result *result)
 {
     const imk_grade_result *t = &one->table;
     const bool known = t->limiting[0];
     const imk_grade_row *row = imk_grade_table(t->overall);
     imk_result_object(result, NULL);
     imk_result_text(result, "model", name);
-    imk_result_text(result, "overall", name_or(known, t->overall, NULL));
-    imk_result_text(result, "gyro", name_or(!isnan(t->gyro_bias), t->gyro, NULL));
-    imk_result_text(result, "accel", name_or(!isnan(t->accel_bias), t->accel, NULL));
+    show_class("overall", "overall_at_best", known, t->at_best, t->overall, result);
+    show_class("gyro", "gyro_at_best", !isnan(t->gyro_bias), t->gyro_at_best, t->gyro, result);
+    show_class("accel", "accel_at_best", !isnan(t->accel_bias), t->accel_at_best, t->accel, result);
     imk_result_quantity(result, "gyro_bias", t->gyro_bias, "rad/s");
     imk_result_quantity(result, "accel_bias", t->accel_bias, "m/s^2");
     imk_result_quantity(result, "gyro_scale_factor", one->gyro_scale, "1");
     imk_result_quantity(result, "accel_scale_factor", one->accel_scale, "1");
     imk_result_text(result, "limiting", t->limiting);
     imk_result_text(result, "position_performance",
-                    known && row ? row->position_performance : NULL);
+                    known && row && !t->at_best ? row->position_performance : NULL);
     show_computed(one, result);
     imk_result_text(result, "no_position", one->no_position);
+    imki_show_assumed_data(assumed, result);
     imki_show_place_data(one, result);
     imk_show_build(imk_device_build_find(name), result);
     imk_result_end(result);
@@ -119,6 +138,7 @@ static void show_bias(const imk_graded *one, bool gyro, imk_result *result)
     const double scale = imk_unit_of(unit).scale;
     const double bias = gyro ? one->table.gyro_bias : one->table.accel_bias;
     const imk_grade grade = gyro ? one->table.gyro : one->table.accel;
+    const bool is_best = gyro ? one->table.gyro_at_best : one->table.accel_at_best;
     if (!(gyro ? one->model->gyro : one->model->accel).present)
         return;
     if (isnan(bias)) {
@@ -137,7 +157,8 @@ static void show_bias(const imk_graded *one, bool gyro, imk_result *result)
     if (better)
         snprintf(needs, sizeof needs, "; the next better class, %s, needs %.6g", better->name,
                  (gyro ? better->gyro_bias_limit : better->accel_bias_limit) / scale);
-    imk_result_line(result, "%s: %s; remaining bias %s %s%s%s", sensor, grade_name(grade),
+    imk_result_line(result, "%s: %s%s; remaining bias %s%s %s%s%s", sensor, at_best(is_best),
+                    grade_name(grade), is_best ? "at least " : "",
                     imk_readable_number(bias / scale, number), unit, allows, needs);
 }
 
@@ -145,19 +166,26 @@ static void show_bias(const imk_graded *one, bool gyro, imk_result *result)
 static void show_position(const imk_graded *one, imk_result *result)
 {
     const imk_grade_way *p = &one->way[IMK_GRADE_GIVEN];
+    const bool is_best = one->missing_count > 0;
+    const char *least = is_best ? "at least " : "";
     char text[600], hour[IMK_READABLE_SIZE], day[IMK_READABLE_SIZE];
     if (one->no_position)
-        snprintf(text, sizeof text, "Position: not computed; %s", one->no_position);
+        snprintf(text, sizeof text, "Position: not computed; %s%s", one->no_position,
+                 one->model->gyro.present && one->model->accel.present
+                     ? ""
+                     : " (imukit join makes a unit of gyros and accelerometers)");
     else if (p->validity[IMK_GRADE_HOUR] == IMK_DRIFT_LOST)
         snprintf(text, sizeof text,
                  "Position: below every class that claims one; no position any more after 1 h");
     else if (p->validity[IMK_GRADE_DAY] == IMK_DRIFT_LOST)
         snprintf(text, sizeof text,
-                 "Position: %s; CEP %s after 1 h, no position any more after 24 h",
-                 grade_name(p->grade), grade_length(p->cep[IMK_GRADE_HOUR], hour));
+                 "Position: %s%s; CEP %s%s after 1 h, no position any more after 24 h",
+                 at_best(is_best), grade_name(p->grade), least,
+                 grade_length(p->cep[IMK_GRADE_HOUR], hour));
     else
-        snprintf(text, sizeof text, "Position: %s; CEP %s after 1 h, %s after 24 h",
-                 grade_name(p->grade), grade_length(p->cep[IMK_GRADE_HOUR], hour),
+        snprintf(text, sizeof text, "Position: %s%s; CEP %s%s after 1 h, %s after 24 h",
+                 at_best(is_best), grade_name(p->grade), least,
+                 grade_length(p->cep[IMK_GRADE_HOUR], hour),
                  grade_length(p->cep[IMK_GRADE_DAY], day));
     imk_result_finding(result, !one->no_position ? 1 : 2, text);
 }
@@ -195,28 +223,6 @@ static void show_needs(const imk_graded *one, imk_result *result)
     imki_show_text(&text, result);
 }
 
-/* Without the run-to-run bias the figures are too good. */
-static bool states_repeatability(const imk_triad *triad)
-{
-    for (int i = 0; i < triad->axis_count; i++)
-        if (triad->bias.repeatability.value[i] > 0 || triad->bias.fixed.sigma[i] > 0)
-            return true;
-    return false;
-}
-
-static void show_flattery(const imk_graded *one, imk_result *result)
-{
-    const bool gyro = states_repeatability(&one->model->gyro);
-    const bool accel = states_repeatability(&one->model->accel);
-    if (!one->no_position && !(gyro && accel))
-        imk_result_line(result,
-                        "The model states no run-to-run bias of its %s: its class and position "
-                        "errors look better than they are.",
-                        gyro    ? "accelerometers"
-                        : accel ? "gyros"
-                                : "gyros and accelerometers");
-}
-
 /* ---- tables ---- */
 
 /* The computed error for the time of a claim. */
@@ -231,13 +237,14 @@ static void add_answer(imk_table *table, const imk_graded *one, const imk_grade_
     else if (isnan(cep))
         imk_table_add(table, "no position");
     else
-        imk_table_add(table, "%s%s", grade_length(cep, length),
-                      cep <= row->position_limit * (1 + 1e-9) ? ", met" : "");
+        imk_table_add(
+            table, "%s%s%s", one->missing_count > 0 ? "at least " : "", grade_length(cep, length),
+            one->missing_count == 0 && cep <= row->position_limit * (1 + 1e-9) ? ", met" : "");
 }
 
-static const char *met(imk_grade grade, double bias, int row)
+static const char *met(imk_grade grade, double bias, bool is_best, int row)
 {
-    return isnan(bias) || (int)grade > row ? "" : ", met";
+    return isnan(bias) || is_best || (int)grade > row ? "" : ", met";
 }
 
 /* Claims beside figures. */
@@ -250,14 +257,15 @@ static void show_classes(const imk_graded *one, imk_result *result)
                          "accelerometers are");
     for (int g = 0; g < IMK_GRADE_NONE; g++) {
         const imk_grade_row *row = imk_grade_table((imk_grade)g);
-        imk_table_row(table, "%s\t%s\t%s", t->limiting[0] && (int)t->overall == g ? "->" : "",
+        imk_table_row(table, "%s\t%s\t%s",
+                      t->limiting[0] && (int)t->overall == g ? (t->at_best ? "at best" : "->") : "",
                       row->name, row->position_performance);
         add_answer(table, one, row);
         imk_table_add(table, "%.4g%s\t%s\t%.6g%s\t%s",
                       row->gyro_bias_limit / imk_unit_of("deg/h").scale,
-                      met(t->gyro, t->gyro_bias, g), row->gyro_technology,
+                      met(t->gyro, t->gyro_bias, t->gyro_at_best, g), row->gyro_technology,
                       row->accel_bias_limit / imk_unit_of("ug").scale,
-                      met(t->accel, t->accel_bias, g), row->accel_technology);
+                      met(t->accel, t->accel_bias, t->accel_at_best, g), row->accel_technology);
     }
 }
 
@@ -282,7 +290,8 @@ static void show_ways(const imk_graded *one, imk_result *result)
         "perfect start, compensated", "self-aligned, compensated"};
     imk_result_gap(result);
     imk_table *table = imk_result_table(result, 0x3eU);
-    imk_table_row(table, "CEP after\t1 min\t1 h\t24 h\ttilt (1 h)\theading (1 h)\tclass");
+    imk_table_row(table, "CEP after\t1 min\t1 h\t24 h\ttilt (1 h)\theading (1 h)\tclass%s",
+                  one->missing_count > 0 ? ", at best" : "");
     for (int way = 0; way < (one->compensation_matters ? IMK_GRADE_WAYS : 2); way++) {
         const imk_grade_way *p = &one->way[way];
         char tilt[IMK_READABLE_SIZE] = "", heading[IMK_READABLE_SIZE] = "";
@@ -333,8 +342,10 @@ static void show_comparison(const imk_graded_several *r, imk_audience audience, 
     for (size_t m = 0; m < r->count; m++) {
         const imk_graded *one = r->graded[m];
         const imk_grade_way *p = &one->way[IMK_GRADE_GIVEN];
-        imk_table_row(table, "%.40s\t%s\t%s", r->name[m],
+        imk_table_row(table, "%.40s\t%s%s\t%s%s", r->name[m],
+                      at_best(one->table.limiting[0] && one->table.at_best),
                       name_or(one->table.limiting[0], one->table.overall, "-"),
+                      at_best(one->missing_count > 0 && p->grade != IMK_GRADE_NONE),
                       one->no_position
                           ? "-"
                           : name_or(p->grade != IMK_GRADE_NONE, p->grade, "no class claims it"));
@@ -379,9 +390,6 @@ static void show_notes(const imk_graded *one, imk_result *result)
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (any_rough(one))
         imk_result_line(result, "~ The errors of attitude are too large for the linear theory.");
-    imk_result_for(result, IMK_FOR_BOTH);
-    show_flattery(one, result);
-    imk_result_for(result, IMK_FOR_TERMINAL);
     if (!one->compensation_matters)
         imk_result_line(result,
                         "The model states no known value that compensation would take out.");
@@ -393,32 +401,49 @@ static void show_notes(const imk_graded *one, imk_result *result)
     imki_show_text(&omitted, result);
 }
 
-static void show_case(const imk_graded *one, const char *name, imk_result *result)
+/* The class by the table, and why it is none. */
+static void show_headline(const imk_graded *one, const char *name, imk_result *result)
 {
     const imk_grade_result *t = &one->table;
+    imki_text unstated = {.bytes = NULL};
     char text[600];
+    imki_unstated_biases(one->model, t->gyro_at_best, t->accel_at_best, &unstated);
+    const char *gap = t->at_best && unstated.size > 0 ? "; not stated: " : "";
+    const char *why = *gap ? unstated.bytes : "";
     imk_result_for(result, IMK_FOR_TERMINAL);
-    imk_result_line(result, "%s: " IMK_BOLD "%s" IMK_PLAIN,
+    imk_result_line(result, "%s: " IMK_BOLD "%s%s" IMK_PLAIN "%s%s",
                     one->model->name[0] ? one->model->name : name,
-                    name_or(t->limiting[0], t->overall, "no biases stated"));
+                    at_best(t->limiting[0] && t->at_best),
+                    name_or(t->limiting[0], t->overall, "no biases stated"),
+                    t->limiting[0] ? gap : "", t->limiting[0] ? why : "");
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, name);
     if (t->limiting[0]) {
-        snprintf(text, sizeof text, "By its biases: %s, decided by the %s.", grade_name(t->overall),
-                 t->limiting);
-        imk_result_finding(result, 1, text);
+        snprintf(text, sizeof text, "By its biases: %s%s, decided by the %s%s%.400s.",
+                 at_best(t->at_best), grade_name(t->overall), t->limiting, gap, why);
+        imk_result_finding(result, t->at_best ? 2 : 1, text);
     }
+    free(unstated.bytes);
+}
+
+static void show_case(const imk_graded *one, const char *name, const imk_unstated *assumed,
+                      imk_result *result)
+{
+    const imk_grade_result *t = &one->table;
+    show_headline(one, name, result);
     show_position(one, result);
     imk_result_for(result, IMK_FOR_BOTH);
     show_bias(one, true, result);
     show_bias(one, false, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
-    if (t->limiting[0])
+    if (t->limiting[0] && !t->at_best)
         imk_result_line(result, "The class is decided by the %s.", t->limiting);
     show_position(one, result);
     imk_result_for(result, IMK_FOR_BOTH);
     show_limits(one, result);
     show_needs(one, result);
+    imki_show_assumed(assumed, name, result);
+    imki_show_missing(one->missing_count, one->missing, result);
     show_classes(one, result);
     if (one->no_position)
         return;
@@ -434,7 +459,7 @@ void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *
     imk_result_object(result, "result");
     imk_result_array(result, "models");
     for (size_t m = 0; m < r->count; m++)
-        show_data(r->graded[m], r->name[m], result);
+        show_data(r->graded[m], r->name[m], r->assumed ? &r->assumed[m] : NULL, result);
     imk_result_end(result);
     imki_show_map_data(result);
     imk_result_end(result);
@@ -443,7 +468,7 @@ void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *
     for (size_t m = 0; m < r->count; m++) {
         if (m > 0)
             imk_result_gap(result);
-        show_case(r->graded[m], r->name[m], result);
+        show_case(r->graded[m], r->name[m], r->assumed ? &r->assumed[m] : NULL, result);
     }
     show_comparison(r, IMK_FOR_TERMINAL, result);
     imk_result_for(result, IMK_FOR_BOTH);
