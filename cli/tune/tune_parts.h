@@ -5,6 +5,7 @@
 
 #include "shell/term_selection.h"
 
+#include "imukit/model_unstated.h"
 #include "imukit/motion_file.h"
 #include "imukit/parameter_file.h"
 #include "imukit/tune_model.h"
@@ -14,7 +15,7 @@ enum { TUNE_OPERANDS = 1 + IMK_TUNING_MOTIONS_MAX };
 typedef struct tune_options {
     double rate, from, to, bias[2], bias_time, correlation_time, latitude, height, frame_rate;
     option_integer windows, runs, seed, threads;
-    int answer, format; /* in the order of the choices */
+    int answer, format, assume_class; /* in the order of the choices */
     bool learned, compensated, per_axis, json;
     const char *output, *plot, *report;
     term_selection terms;
@@ -24,6 +25,7 @@ typedef struct tune_work {
     const tune_options *o;
     const char *name[TUNE_OPERANDS + 1]; /* the model, then motions */
     imk_model *model;
+    imk_unstated unstated, assumed;
     imk_motion_file *motion[IMK_TUNING_MOTIONS_MAX];
     imk_tune_model_settings settings;
     imk_tune_model *r;

@@ -7,6 +7,7 @@
 #include "tune_parts.h"
 
 #include "imukit/model_file.h"
+#include "imukit/model_unstated.h"
 #include "imukit/names.h"
 #include "imukit/show.h"
 
@@ -44,6 +45,7 @@ static const option tune_option_table[] = {
     {"compensated", OPTION_FLAG, AT(compensated),
      .help = "known values of the model are taken out of the readings, and their uncertainty "
              "stays"},
+    ASSUME_CLASS_OPTION(AT(assume_class)),
     {"per-axis", OPTION_FLAG, AT(per_axis), .help = "numbers of each axis; default: of each triad"},
     LATITUDE_OPTION(AT(latitude), "geodetic latitude of motions that state no place; default "
                                   "45deg"),
@@ -74,47 +76,53 @@ static const option output_option_table[] = {
 
 /* ---- the model ---- */
 
-static bool any_of(const double *value, size_t count)
-{
-    bool any = false;
-    for (size_t i = 0; i < count; i++)
-        any = any || value[i] != 0.0;
-    return any;
-}
-
-/* What a model does not state is not zero, and on a motion it is most of the errors. */
+/* What a model does not state is not zero, and on a motion it is most of the errors. The bias from
+ * run to run is known to the filter when a time begins. */
 static void tell_unstated(const tune_work *w)
 {
-    static const char *const kinds[2] = {"gyros", "accelerometers"};
-    for (int sensor = 0; sensor < 2; sensor++) {
-        const imk_triad *t = imk_model_triad(w->model, sensor);
-        const bool scale = any_of(t->scale_factor.fixed.value, 2 * IMK_AXES_MAX) ||
-                           any_of(t->scale_factor.repeatability.value, IMK_AXES_MAX);
-        const bool turned = any_of(&t->misalignment.value[0][0], 6 * IMK_AXES_MAX) ||
-                            any_of(&t->cross_axis.value[0][0], 6 * IMK_AXES_MAX);
-        if (t->present && (!scale || !turned))
-            command_warn("unstated",
-                         "%s states no %s%s%s of its %s: here they count as zero, and the noise "
-                         "found is too small if the unit has them",
-                         w->name[0], scale ? "" : "scale factor error",
-                         scale || turned ? "" : " and no ", turned ? "" : "misalignment",
-                         kinds[sensor]);
-    }
+    char names[300] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < w->unstated.count && used < sizeof names; i++)
+        if (strcmp(w->unstated.term[i].key, "bias.repeatability") != 0)
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s%s",
+                                     used > 0 ? ", " : "", w->unstated.term[i].text);
+    if (used > 0)
+        command_warn("unstated",
+                     "%s does not state %s: here that is zero, and the noise found is too small if "
+                     "the unit has it. --assume-class own takes typical values",
+                     w->name[0], names);
 }
 
 static int open_model(tune_work *w)
 {
     int code = command_model(w->name[0], w->model, NULL);
-    if (code < 0)
-        tell_unstated(w);
-    if (code < 0)
-        code = term_selection_apply(&w->o->terms, w->model);
     for (int sensor = 0; code < 0 && sensor < 2; sensor++)
         if (!imk_model_triad(w->model, sensor)->present)
             code = command_failed("%s has no %s: a filter of attitude, velocity and position needs "
                                   "gyros and accelerometers",
                                   w->name[0], sensor == IMK_GYRO ? "gyros" : "accelerometers");
+    if (code < 0)
+        imk_model_unstated(w->model, &w->unstated);
+    if (code < 0)
+        code = term_selection_apply(&w->o->terms, w->model);
+    if (code < 0 && w->o->assume_class)
+        imk_model_assume_class(w->model, options_assumed_class(w->o->assume_class), &w->assumed);
     return code;
+}
+
+/* What was assumed, term by term. */
+static void show_assumed(const tune_work *w, imk_result *result)
+{
+    imk_result_array(result, "assumed");
+    for (size_t i = 0; i < w->assumed.count; i++)
+        imk_result_text(result, NULL, w->assumed.term[i].text);
+    imk_result_end(result);
+    for (size_t i = 0; i < w->assumed.count; i++) {
+        const imk_unstated_term *term = &w->assumed.term[i];
+        imk_result_line(result, "assumed: %s %.3g %s (%s)", term->text,
+                        term->typical / imk_unit_of(term->unit).scale, term->unit,
+                        imk_grade_table(term->grade) ? imk_grade_table(term->grade)->name : "-");
+    }
 }
 
 /* ---- the numbers as a file ---- */
@@ -169,6 +177,8 @@ static int show(const tune_work *w)
     const tune_options *o = w->o;
     const imk_filter_tuning *tuning = w->r->tuning;
     char text[600];
+    if (!o->assume_class)
+        tell_unstated(w);
     for (size_t i = 0; i < tuning->omitted_count; i++)
         command_warn("left_out", "%s is left out of the prediction", tuning->omitted[i]);
     imk_tune_verdict(w->r, text, sizeof text);
@@ -178,6 +188,7 @@ static int show(const tune_work *w)
     if (code >= 0)
         return code;
     imk_result *result = show_begin("tune");
+    show_assumed(w, result);
     imk_show_tune(w->r, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (!o->output)

@@ -129,10 +129,11 @@ static void test_messages(void **state)
 {
     (void)state;
     assert_int_equal(run("$I tune BMI270 turn.yaml" SMALL), 0);
-    check_contains(err,
-                   "BMI270 states no scale factor error and no misalignment of its gyros: here "
-                   "they count as zero",
-                   "tune");
+    check_contains(err, "BMI270 does not state gyro bias instability, ", "tune");
+    check_contains(err, "accelerometer misalignment", "tune");
+    assert_int_equal(run("$I tune BMI270 turn.yaml --assume-class control" SMALL), 0);
+    assert_null(strstr(err, "does not state"));
+    check_contains(out, "assumed: gyro scale factor 1e+04 ppm (control system)\n", "tune");
     check_message("$I tune unit.yaml turn.yaml --to kalibr", 2,
                   "imukit tune: error: --to, --answer and --frame-rate are for the file of -o "
                   "FILE; add that option\n" TRY("tune"));

@@ -59,11 +59,21 @@ static imki_sampled walk_of(double step, double n)
                           .start = {{step * step * walk_before(n), 0.0}, {0.0, 0.0}}};
 }
 
-/* States y - m and m. */
-static imki_sampled first_order_of(double variance, double time, double h, double n)
+/* The logarithm of the factor per sample: of a process that is sampled, and of one whose samples
+ * have the density of the process at 0 Hz, (2 x - 1)/(2 x + 1), x = T/h. */
+static double decay_of(const imki_process *p, double h)
 {
-    const double less = -imk_expm1(-h / time), f = 1.0 - less;
-    const double all = -imk_expm1(-n * h / time), q = -variance * imk_expm1(-2.0 * h / time);
+    const double x = p->time / h;
+    if (!p->matched)
+        return -1.0 / x;
+    return x > 1e3 ? -(1.0 + 1.0 / (12.0 * x * x)) / x : imk_ln((2.0 * x - 1.0) / (2.0 * x + 1.0));
+}
+
+/* States y - m and m. */
+static imki_sampled first_order_of(double variance, double decay, double n)
+{
+    const double less = -imk_expm1(decay), f = 1.0 - less;
+    const double all = -imk_expm1(n * decay), q = -variance * imk_expm1(2.0 * decay);
     const double kept = all / (n * less),
                  lost = n * less < 1e-4 ? 0.5 * (n - 1.0) * less : 1.0 - kept;
     double apart = q * walk_before(n);
@@ -137,7 +147,7 @@ static imk_status white_through(const imki_drift_element *element, const imk_tri
 {
     const imk_low_pass filter = {triad->bandwidth.value[axis], triad->damping.value[axis]};
     imk_arma arma;
-    *s = white_of(element->process.size / sqrt(h));
+    *s = white_of(element->process.size * sqrt(element->process.share / h));
     if (!element->term->filtered || filter.bandwidth == 0.0)
         return IMK_OK;
     const imk_status status = imk_filtered_white_arma(element->process.size, filter, h, &arma);
@@ -172,7 +182,7 @@ static imk_status sampled_of(const imki_tuning_plan *plan, const imki_drift_elem
         *s = walk_of(p->size * sqrt(h), n);
         return IMK_OK;
     case IMKI_PROCESS_FIRST_ORDER:
-        *s = first_order_of(p->share * p->size * p->size, p->time, h, n);
+        *s = first_order_of(p->share * p->size * p->size, decay_of(p, h), n);
         return IMK_OK;
     case IMKI_PROCESS_RESONANCE: {
         const imk_status status =
