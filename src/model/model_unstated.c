@@ -23,7 +23,7 @@ typedef struct expected_term {
     bool tells_class;
 } expected_term;
 
-static const expected_term expected[] = {
+static const expected_term expected_terms[] = {
     {AT(bias.repeatability),
      NOWHERE,
      IN_TABLE(repeatability),
@@ -79,7 +79,7 @@ static const expected_term expected[] = {
      {NULL, "accelerometer nonlinearity, second order"},
      false},
 };
-enum { EXPECTED = sizeof expected / sizeof expected[0], SENSORS = 2 };
+enum { EXPECTED = sizeof expected_terms / sizeof expected_terms[0], SENSORS = 2 };
 
 static const imki_field *field_at(size_t offset)
 {
@@ -92,7 +92,7 @@ static const imki_field *field_at(size_t offset)
 bool imki_field_expected(const imki_field *field, int kind)
 {
     for (int i = 0; i < EXPECTED && kind < SENSORS; i++)
-        if (expected[i].offset == field->offset && expected[i].unit[kind])
+        if (expected_terms[i].offset == field->offset && expected_terms[i].unit[kind])
             return true;
     return false;
 }
@@ -175,10 +175,11 @@ static imk_grade class_of(const imk_triad *triad, int sensor)
         double sum = 0;
         int count = 0;
         for (int i = 0; i < EXPECTED; i++) {
-            const double stated = expected[i].tells_class ? worst_of(triad, &expected[i]) : 0;
+            const double stated =
+                expected_terms[i].tells_class ? worst_of(triad, &expected_terms[i]) : 0;
             if (!(stated > 0))
                 continue;
-            const double ratio = log(stated / typical(grade, sensor, &expected[i]));
+            const double ratio = log(stated / typical(grade, sensor, &expected_terms[i]));
             sum += ratio * ratio;
             count++;
         }
@@ -208,16 +209,17 @@ static void find(const imk_model *model, imk_grade grade, imk_unstated *unstated
         const imk_grade own = grade != IMK_GRADE_NONE ? grade : imk_model_class(model, sensor);
         const imk_grade found = own != IMK_GRADE_NONE ? own : IMK_GRADE_CONTROL;
         for (int i = 0; i < EXPECTED; i++) {
-            if (!expected[i].unit[sensor] || is_stated(model, sensor, &expected[i]))
+            if (!expected_terms[i].unit[sensor] || is_stated(model, sensor, &expected_terms[i]))
                 continue;
-            const char *key = field_at(expected[i].offset)->path[sensor];
-            unstated->term[unstated->count++] = (imk_unstated_term){
-                .sensor = sensor,
-                .key = key,
-                .text = expected[i].text[sensor],
-                .grade = found,
-                .typical = fmin(typical(found, sensor, &expected[i]), bound_of(model, sensor, key)),
-                .unit = expected[i].unit[sensor]};
+            const char *key = field_at(expected_terms[i].offset)->path[sensor];
+            unstated->term[unstated->count++] =
+                (imk_unstated_term){.sensor = sensor,
+                                    .key = key,
+                                    .text = expected_terms[i].text[sensor],
+                                    .grade = found,
+                                    .typical = fmin(typical(found, sensor, &expected_terms[i]),
+                                                    bound_of(model, sensor, key)),
+                                    .unit = expected_terms[i].unit[sensor]};
         }
     }
 }

@@ -223,7 +223,7 @@ enum { CHANGES = IMKI_FLICKER_CHANGES };
 static void change_stage(imk_flicker_state *state, size_t stage)
 {
     const uint64_t change = state->changes[stage]++;
-    const size_t count = stage < 3 + AHEAD ? BUFFER : 1, i = change % count;
+    const size_t count = stage < 3 + AHEAD ? BUFFER : 1, i = (size_t)(change % count);
     double one, *ahead = stage < 3 + AHEAD ? state->ahead[stage - 3] : &one;
     if (i == 0)
         imk_random_normals(state->random, stage_stream(state, stage), change, count, ahead);

@@ -71,6 +71,7 @@ static void set_factors(search *s, bool ceiling, double x)
 static imk_status find(search *s, bool ceiling, double high, double *x, double *reached,
                        imk_error *error)
 {
+    *reached = (double)INFINITY;
     double good = high * least_part, bad = high;
     imk_status status;
     set_factors(s, ceiling, good);

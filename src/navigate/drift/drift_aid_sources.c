@@ -77,19 +77,10 @@ static void add_noise(imki_drift_plan *plan, const imk_drift_settings *s, size_t
     }
 }
 
-static bool same_point(const imk_aid *a, const imk_aid *b)
-{
-    bool same = true;
-    for (int i = 0; i < 3; i++)
-        same = same && a->lever_arm[i] == b->lever_arm[i] &&
-               a->lever_arm_sigma[i] == b->lever_arm_sigma[i];
-    return same;
-}
-
 size_t imki_aid_point(const imk_aid *aids, size_t aid)
 {
     size_t first = 0;
-    while (first < aid && !same_point(&aids[first], &aids[aid]))
+    while (first < aid && !imki_aids_at_one_point(&aids[first], &aids[aid]))
         first++;
     return first;
 }

@@ -2,10 +2,11 @@
 /* The description of an aid. */
 #include "imukit/aiding.h"
 
+#include "navigation_filter_internal.h"
+
 #include "base/refuse_internal.h"
 
 #include <math.h>
-#include <stdbool.h>
 
 static const uint32_t cookie = 0xA1D1A1D1;
 
@@ -113,4 +114,13 @@ imk_status imk_aid_validate(const imk_aid *a, imk_error *error)
         return imki_refuse(error, IMK_ERROR_RANGE, "until", a->until, a->from,
                            "a time not before `from`");
     return IMK_OK;
+}
+
+bool imki_aids_at_one_point(const imk_aid *a, const imk_aid *b)
+{
+    bool same = true;
+    for (int i = 0; i < 3; i++)
+        same = same && a->lever_arm[i] == b->lever_arm[i] &&
+               a->lever_arm_sigma[i] == b->lever_arm_sigma[i];
+    return same;
 }

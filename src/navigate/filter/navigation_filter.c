@@ -22,8 +22,7 @@ static size_t aid_states(const imk_navigation_filter_settings *settings, size_t 
         const double *correlated = aid->correlated_sigma, *arm = aid->lever_arm_sigma;
         size_t shared = k;
         for (size_t i = k; i-- > 0;)
-            if (memcmp(settings->aid[i].lever_arm, aid->lever_arm, sizeof aid->lever_arm) == 0 &&
-                memcmp(settings->aid[i].lever_arm_sigma, arm, sizeof aid->lever_arm_sigma) == 0)
+            if (imki_aids_at_one_point(&settings->aid[i], aid))
                 shared = i;
         const bool has_arm = arm[0] > 0.0 || arm[1] > 0.0 || arm[2] > 0.0;
         const bool has_correlated =

@@ -15,6 +15,9 @@ enum {
     IMKI_FILTER_STATES_MAX = IMK_NAVIGATION_ERRORS + 6 * IMK_BIAS_PARTS_MAX + IMKI_AID_STATES_MAX
 };
 
+/* Have they the same lever arm, and the same sigma of it? (aiding.c) */
+bool imki_aids_at_one_point(const imk_aid *a, const imk_aid *b);
+
 /* An error of an aid on one axis: a constant, or a Gauss-Markov process. */
 typedef struct imki_aid_state {
     double correlation_time; /* [s]; 0: a constant */

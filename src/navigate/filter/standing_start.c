@@ -100,8 +100,8 @@ static void describe(const imk_navigation_filter *f, const imk_standing_start *s
     }
 }
 
-/* P H^T + J of all states, and the inverse of S, zeros if it has none. @return z^T S^-1 z; infinity:
- * S has no inverse */
+/* P H^T + J of all states, and the inverse of S, zeros if it has none. @return z^T S^-1 z;
+ * infinity: S has no inverse */
 static double expect(const imk_navigation_filter *f, const measurement *m, double *ph,
                      double inverse[9])
 {
