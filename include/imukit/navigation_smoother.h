@@ -19,7 +19,7 @@ IMK_BEGIN_C
 
 /** Where the memory of records comes from: it stays until the smoothing is done.
  *  @return `size` bytes, aligned for doubles; NULL: there is none, and the recording has failed */
-typedef void *(*imk_smoother_room)(void *context, size_t size);
+typedef void *(*imk_smoother_room)(size_t size, void *context);
 
 /** A recording of a filter in progress. */
 typedef struct imk_navigation_smoother imk_navigation_smoother;

@@ -29,7 +29,7 @@ void imki_navigate_track_row(imk_navigate_log *n, const imk_navigation_filter_es
     n->largest = fmax(n->largest, hypot(way.v[0], way.v[1]));
 }
 
-static void *room_of_arena(void *context, size_t size)
+static void *room_of_arena(size_t size, void *context)
 {
     return imki_arena_room(context, size);
 }

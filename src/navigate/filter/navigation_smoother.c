@@ -35,7 +35,7 @@ struct imk_navigation_smoother {
 
 static void *take(imk_navigation_smoother *s, size_t size)
 {
-    void *memory = s->failed ? NULL : s->room(s->context, size);
+    void *memory = s->failed ? NULL : s->room(size, s->context);
     s->failed = s->failed || !memory;
     return memory;
 }
@@ -54,8 +54,8 @@ imk_navigation_smoother *imk_navigation_smoother_start(imk_navigation_filter *fi
 {
     imk_navigation_smoother *s = NULL;
     if (!(filter->settings.rotation_sigma > 0.0))
-        s = room(context, sizeof *s);
-    double *step = s ? room(context, 10 * filter->states * sizeof *step) : NULL;
+        s = room(sizeof *s, context);
+    double *step = s ? room(10 * filter->states * sizeof *step, context) : NULL;
     if (!step)
         return NULL;
     *s =

@@ -11,7 +11,7 @@
 
 enum { N = 18, ROWS_MOST = 3, INSTANTS = 9, DATA = 45, WANTED = 9 };
 
-static void *room(void *context, size_t size)
+static void *room(size_t size, void *context)
 {
     void *memory = malloc(size);
     void **list = context;
@@ -21,7 +21,7 @@ static void *room(void *context, size_t size)
     return memory;
 }
 
-static void *none(void *context, size_t size)
+static void *none(size_t size, void *context)
 {
     (void)context;
     (void)size;
