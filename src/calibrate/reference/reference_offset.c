@@ -8,9 +8,22 @@
  *     log L = -n/2 sum over the axes of ln(1 - R^2)
  *
  * which weighs the axes by how well they follow at all. The shifts are those of averages over some
- * samples, few enough for the work to stay small; from the best of them Newton's steps of
+ * samples, few enough for the work to stay small; from the chosen one Newton's steps of
  * reference_fit.c go on with every sample. Readings at the ends, which some shifts would compare
- * with nothing, are left out throughout, so that all shifts are assessed by the same readings. */
+ * with nothing, are left out throughout, so that all shifts are assessed by the same readings.
+ *
+ * A motion that repeats has several shifts that fit alike: a head that turns on by equal angles has
+ * one each step, because the fit takes up the angle. Noise alone then says which of them is best.
+ * So of all shifts that are not significantly worse than the best, those nearest to zero are taken.
+ * For a axes and n independent residuals, a shift is worse if 2 log L is less by more than
+ *
+ *     28 + 6 a
+ *
+ * which is, within 2, chi-square of 3 a degrees of freedom, those in which two fits of an axis may
+ * differ, at a chance of 5e-7 (a = 1, 3, 6, 8: 32, 46, 62, 71), or 1e-3 for 2000 shifts. Residuals
+ * are correlated where a sensor has slow noise or errors that the fit does not have; n is the
+ * number of averages divided by the largest factor by which the variance of their means over 2, 4,
+ * 8 … exceeds that of independent ones. */
 #include "reference_internal.h"
 
 #include "base/refuse_internal.h"
@@ -29,6 +42,11 @@ typedef struct search {
     double *reference[2][3], *reading[2][IMK_AXES_MAX];
     double *merit, *correlation; /* of 2 shift + 1 */
 } search;
+
+/* Shifts that are taken together. */
+typedef struct region {
+    size_t begin, end, best;
+} region;
 
 static size_t part_of(const imk_test_record *record, double max_shift)
 {
@@ -131,54 +149,153 @@ static double total(size_t count, const double *a)
     return sum;
 }
 
+/* Sums of the products of a sensor's reference, `late` averages older. */
+static imki_linear_fit reference_sums(const search *s, int sensor, ptrdiff_t late,
+                                      const double *r[3])
+{
+    const size_t count = s->points - 2 * s->shift;
+    imki_linear_fit fit = {.count = count};
+    for (int j = 0; j < 3; j++) {
+        r[j] = s->reference[sensor][j] + ((ptrdiff_t)s->shift - late);
+        fit.sum[j] = total(count, r[j]);
+    }
+    fit.product[0] = inner(count, r[0], r[0]);
+    fit.product[1] = inner(count, r[0], r[1]);
+    fit.product[2] = inner(count, r[0], r[2]);
+    fit.product[4] = inner(count, r[1], r[1]);
+    fit.product[5] = inner(count, r[1], r[2]);
+    fit.product[7] = inner(count, r[2], r[2]);
+    return fit;
+}
+
+/* The fit of readings y by a reference of these sums. */
+static imki_linear_fit fit_axis(const imki_linear_fit *sums, const double *const r[3],
+                                const double *y)
+{
+    imki_linear_fit own = *sums;
+    own.sum[3] = total(own.count, y);
+    own.product[3] = inner(own.count, r[0], y);
+    own.product[6] = inner(own.count, r[1], y);
+    own.product[8] = inner(own.count, r[2], y);
+    own.product[9] = inner(own.count, y, y);
+    imki_linear_fit_solve(&own);
+    return own;
+}
+
 /* Merit and best correlation of the readings when the reference is `late` averages older. */
 static void assess(const search *s, ptrdiff_t late, double *merit, double *correlation)
 {
-    const size_t count = s->points - 2 * s->shift;
     *merit = *correlation = 0.0;
     for (int sensor = 0; sensor < 2; sensor++) {
         const double *r[3];
-        imki_linear_fit fit = {.count = count};
         if (!s->used[sensor])
             continue;
-        for (int j = 0; j < 3; j++) {
-            r[j] = s->reference[sensor][j] + ((ptrdiff_t)s->shift - late);
-            fit.sum[j] = total(count, r[j]);
-        }
-        fit.product[0] = inner(count, r[0], r[0]);
-        fit.product[1] = inner(count, r[0], r[1]);
-        fit.product[2] = inner(count, r[0], r[2]);
-        fit.product[4] = inner(count, r[1], r[1]);
-        fit.product[5] = inner(count, r[1], r[2]);
-        fit.product[7] = inner(count, r[2], r[2]);
+        const imki_linear_fit sums = reference_sums(s, sensor, late, r);
         for (int axis = 0; axis < s->record->axis_count[sensor]; axis++) {
-            const double *y = s->reading[sensor][axis] + s->shift;
-            imki_linear_fit own = fit;
-            own.sum[3] = total(count, y);
-            own.product[3] = inner(count, r[0], y);
-            own.product[6] = inner(count, r[1], y);
-            own.product[8] = inner(count, r[2], y);
-            own.product[9] = inner(count, y, y);
-            imki_linear_fit_solve(&own);
-            *merit -= imk_ln(fmax(1.0 - own.share, 1e-12));
-            *correlation = fmax(*correlation, sqrt(fmax(own.share, 0.0)));
+            const imki_linear_fit fit = fit_axis(&sums, r, s->reading[sensor][axis] + s->shift);
+            *merit -= imk_ln(fmax(1.0 - fit.share, 1e-12));
+            *correlation = fmax(*correlation, sqrt(fmax(fit.share, 0.0)));
         }
     }
 }
 
-/* The largest correlation at a peak that a valley separates from the best one. */
-static void find_rival(const search *s, size_t best, imk_reference_shift *shift)
+/* ---- choice ----------------------------------------------------------------------------------
+ */
+
+/* Variance of the means over `length` residuals, times the length. */
+static double scaled_variance(const imki_linear_fit *fit, const double *const r[3], const double *y,
+                              size_t length)
+{
+    const size_t blocks = fit->count / length;
+    double sum = 0.0, square = 0.0;
+    for (size_t block = 0; block < blocks; block++) {
+        double e = 0.0;
+        for (size_t k = block * length; k < (block + 1) * length; k++)
+            e += y[k] - fit->intercept - fit->slope[0] * r[0][k] - fit->slope[1] * r[1][k] -
+                 fit->slope[2] * r[2][k];
+        sum += e;
+        square += e * e;
+    }
+    const double n = (double)blocks;
+    return (square - sum * sum / n) / ((n - 1.0) * (double)length);
+}
+
+/* As many independent residuals tell as much as those of this shift. */
+static double independent_residuals(const search *s, ptrdiff_t late)
+{
+    enum { BLOCKS_MIN = 16 };
+    double factor = 1.0;
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const double *r[3];
+        if (!s->used[sensor])
+            continue;
+        const imki_linear_fit sums = reference_sums(s, sensor, late, r);
+        for (int axis = 0; axis < s->record->axis_count[sensor]; axis++) {
+            const double *y = s->reading[sensor][axis] + s->shift;
+            const imki_linear_fit fit = fit_axis(&sums, r, y);
+            const double one = scaled_variance(&fit, r, y, 1);
+            for (size_t length = 2; one > 0.0 && length * BLOCKS_MIN <= fit.count; length *= 2)
+                factor = fmax(factor, scaled_variance(&fit, r, y, length) / one);
+        }
+    }
+    return (double)(s->points - 2 * s->shift) / factor;
+}
+
+/* The merit from which on a shift is not worse than the best one. That may lie between two shifts
+ * of the search: half a step from it the variance that is left has grown by half of what it grows
+ * by in a step, at most. */
+static double merit_of_equals(const search *s, size_t best)
+{
+    double axes = 0.0, neighbour = s->merit[best];
+    for (int sensor = 0; sensor < 2; sensor++)
+        axes += s->used[sensor] ? (double)s->record->axis_count[sensor] : 0.0;
+    if (best > 0)
+        neighbour = fmin(neighbour, s->merit[best - 1]);
+    if (best < 2 * s->shift)
+        neighbour = fmin(neighbour, s->merit[best + 1]);
+    const double growth = imk_exp((s->merit[best] - neighbour) / axes);
+    const double n = independent_residuals(s, (ptrdiff_t)best - (ptrdiff_t)s->shift);
+    return s->merit[best] - axes * imk_ln(0.5 * (1.0 + growth)) - (28.0 + 6.0 * axes) / n;
+}
+
+static size_t distance(const search *s, size_t k)
+{
+    return k < s->shift ? s->shift - k : k - s->shift;
+}
+
+/* The shifts next to zero of those with this merit, as far as they are one behind the other. */
+static region nearest_region(const search *s, double merit)
+{
+    const size_t count = 2 * s->shift + 1;
+    size_t nearest = count;
+    for (size_t k = 0; k < count; k++)
+        if (s->merit[k] >= merit && (nearest == count || distance(s, k) < distance(s, nearest)))
+            nearest = k;
+    region found = {nearest, nearest + 1, nearest};
+    while (found.begin > 0 && s->merit[found.begin - 1] >= merit)
+        found.begin--;
+    while (found.end < count && s->merit[found.end] >= merit)
+        found.end++;
+    for (size_t k = found.begin; k < found.end; k++)
+        found.best = s->merit[k] > s->merit[found.best] ? k : found.best;
+    return found;
+}
+
+/* The largest correlation at another peak: of shifts that fit as well, or behind a valley. */
+static void find_rival(const search *s, const region *chosen, double merit,
+                       imk_reference_shift *shift)
 {
     const size_t count = 2 * s->shift + 1;
     shift->rival = 0.0;
     shift->rival_offset = (double)NAN;
     for (int direction = -1; direction <= 1; direction += 2) {
-        double valley = s->correlation[best];
-        for (size_t k = best; direction < 0 ? k > 0 : k + 1 < count;) {
+        double valley = s->correlation[chosen->best];
+        for (size_t k = chosen->best; direction < 0 ? k > 0 : k + 1 < count;) {
             k = (size_t)((ptrdiff_t)k + direction);
             const double here = s->correlation[k];
+            const bool equal = s->merit[k] >= merit && (k < chosen->begin || k >= chosen->end);
             valley = fmin(valley, here);
-            if (!(valley <= 0.9 * here) || !(here > shift->rival))
+            if (!(equal || valley <= 0.9 * here) || !(here > shift->rival))
                 continue;
             shift->rival = here;
             shift->rival_offset = ((double)k - (double)s->shift) * (double)s->part * s->record->dt;
@@ -239,13 +356,15 @@ imk_status imk_reference_offset(const imk_test_record *record, double max_shift,
         best = s.merit[k] > s.merit[best] ? k : best;
     }
     imk_reference_shift found;
-    double lag = ((double)best - (double)s.shift) * (double)s.part;
+    const double merit = merit_of_equals(&s, best);
+    const region chosen = nearest_region(&s, merit);
+    double lag = ((double)chosen.best - (double)s.shift) * (double)s.part;
     const double limit = 4.0 * (double)s.part + 4.0;
     if (!imki_reference_lag(record, s.used[0] + 2 * s.used[1], limit, &lag, &found.sigma))
         return imki_refuse(error, IMK_ERROR_NO_CONVERGENCE, "max_shift", lag * record->dt,
                            max_shift,
                            "check that the readings follow the reference, or allow a larger shift");
-    find_rival(&s, best, &found);
+    find_rival(&s, &chosen, merit, &found);
     find_axis(&s, lag, &found);
     found.offset = lag * record->dt;
     found.sigma *= record->dt;

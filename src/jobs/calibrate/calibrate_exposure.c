@@ -195,6 +195,14 @@ static imk_status find_shift(const imk_test_record *record, const imk_allocator 
     return status;
 }
 
+/* Another beginning of the programme, if it fits nearly as well. */
+static void tell_rival(imk_calibrate_record *log, const imk_reference_shift *shift)
+{
+    if (shift->rival > 0.95 * shift->correlation)
+        imki_find(&log->loaded, IMK_FINDING_WARNING, "rival:motion_offset", NULL,
+                  IMKI_NUMBERS(log->motion_offset + shift->rival_offset));
+}
+
 static imk_status find_offset(imk_calibrate_record *log, imk_error *error)
 {
     imk_reference_shift shift;
@@ -204,12 +212,10 @@ static imk_status find_offset(imk_calibrate_record *log, imk_error *error)
     if (!(shift.correlation > followed))
         return imki_fail(&log->loaded, error, IMK_ERROR_CONFLICT, "programme_not_followed", NULL,
                          IMKI_NUMBERS(largest_shift, shift.correlation));
-    log->motion_offset = shift.offset;
     imki_find(&log->loaded, IMK_FINDING_NOTE, "programme_begins", NULL,
               IMKI_NUMBERS(shift.offset, shift.sigma, shift.correlation));
-    if (shift.rival > 0.95 * shift.correlation)
-        imki_find(&log->loaded, IMK_FINDING_WARNING, "rival:motion_offset", NULL,
-                  IMKI_NUMBERS(shift.rival_offset));
+    tell_rival(log, &shift);
+    log->motion_offset = shift.offset;
     return IMK_OK;
 }
 
@@ -220,17 +226,19 @@ static imk_status check_offset(imk_calibrate_record *log, imk_error *error)
     imk_reference_shift shift;
     const imk_status status = find_shift(&log->record, &log->log.allocator, &shift, &why);
     if (status == IMK_OK && shift.correlation > followed &&
-        fabs(shift.offset) >= log->record.dt + 5 * shift.sigma)
+        fabs(shift.offset) >= log->record.dt + 5 * shift.sigma) {
         imki_find(&log->loaded, IMK_FINDING_WARNING, "calibrate:motion_offset", NULL,
                   IMKI_NUMBERS(fabs(shift.offset), shift.offset > 0, shift.sigma,
                                log->motion_offset + shift.offset));
+        tell_rival(log, &shift);
+    }
     if (status == IMK_ERROR_NO_CONVERGENCE && fabs(why.value) > clock_tolerance)
         imki_find(&log->loaded, IMK_FINDING_WARNING, "calibrate:not_aligned", NULL, 0, NULL);
     return status == IMK_ERROR_MEMORY ? no_memory(error) : IMK_OK;
 }
 
 /* Columns of rates, or of forces, that are late or early beside the readings. A sine has many
- * shifts. */
+ * shifts, and so have equal steps. */
 static imk_status check_columns(imk_calibrate_record *log, int sensor, imk_error *error)
 {
     imk_error why;

@@ -5,8 +5,14 @@
  * Flicker, S(f) = B^2/(2 pi f): Gauss-Markov spectra of variance v with correlation times in
  * progression r add up to v/(2 ln(r) f) [KESHNER1982], hence v = B^2 ln(r)/pi, here with r = 10.
  * Four of them, 10 s to 10^4 s, cover what a filter can follow: faster flicker is below the white
- * noise of usual sensors, slower is a constant. A part of the model's own flicker down to decades
- * of 10^7 s, three more such variances, joins the constant.
+ * noise of usual sensors, slower is a constant. Each stands for the times of a decade about its
+ * own. The model's flicker is flat below 1/(2 pi T), with the density B^2 T there: so much have
+ * all processes of times up to T_m = (pi/2) T, each d ln(time) of variance (B^2/pi) d ln(time). So
+ * the constant has, from 10^4.5 s on,
+ *
+ *     (B^2/pi) ln(T_m/10^4.5)
+ *
+ * and if T_m is less, a part stands for the times up to T_m alone, or is left out.
  *
  * A self-alignment over the time A before the start leaves e = M m + noise, m the means of the
  * biases over A. The filter's biases are those at its end. With the part's own statistics, exact:
@@ -19,17 +25,26 @@
 
 #include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
+#include "imukit/noise.h"
 
 #include <math.h>
 #include <string.h>
 
-static const double decade_variance = 0.7329355988794337; /* ln(10)/pi */
-enum { DECADES = 4, SLOWER_DECADES = 3 };
-static const double first_time = 10.0; /* [s] */
+enum { DECADES = 4 };
+static const double pi = 3.141592653589793;
+static const double first_edge = 3.1622776601683795; /* where the part of 10 s begins [s] */
+static const double last_edge = 31622.776601683795;  /* where that of 10^4 s ends [s] */
 
 static double squared(double x)
 {
     return x * x;
+}
+
+/* T_m: all flicker is of processes with less time [s]. */
+static double longest_flicker(const imk_triad *triad)
+{
+    const double time = triad->noise.bias_instability_correlation_time.value;
+    return 0.5 * pi * (time > 0.0 ? time : IMK_FLICKER_TIME);
 }
 
 /* Variance of what is constant while the unit stands: bias and, of scale factor and rows, the
@@ -37,10 +52,10 @@ static double squared(double x)
 static double constant_variance(const imk_triad *triad, int axis, imk_vector3 input,
                                 imk_vector3 force)
 {
+    const double slower = fmax(0.0, imk_ln(longest_flicker(triad) / last_edge)) / pi;
     double along = 0.0, sum = squared(triad->bias.repeatability.value[axis]) +
                               squared(triad->bias.fixed.sigma[axis]) +
-                              squared(triad->noise.bias_instability.value[axis]) * SLOWER_DECADES *
-                                  decade_variance;
+                              squared(triad->noise.bias_instability.value[axis]) * slower;
     for (int j = 0; j < 3; j++) {
         along += triad->direction[axis][j] * input.v[j];
         sum += squared(triad->misalignment.sigma[axis][j] * input.v[j]) +
@@ -60,12 +75,14 @@ static void add_flicker(const imk_triad *triad, imk_triad_errors *errors)
 {
     if (!any(triad->noise.bias_instability.value))
         return;
-    double time = first_time;
-    for (int k = 0; k < DECADES; k++, time *= 10.0) {
+    const double longest = longest_flicker(triad);
+    double edge = first_edge;
+    for (int k = 0; k < DECADES && longest > edge; k++, edge *= 10.0) {
+        const double end = fmin(10.0 * edge, longest), share = imk_ln(end / edge) / pi;
         imk_bias_part *part = &errors->part[errors->part_count++];
-        part->correlation_time = time;
+        part->correlation_time = sqrt(edge * end);
         for (int i = 0; i < 3; i++)
-            part->sigma[i] = triad->noise.bias_instability.value[i] * sqrt(decade_variance);
+            part->sigma[i] = triad->noise.bias_instability.value[i] * sqrt(share);
     }
 }
 

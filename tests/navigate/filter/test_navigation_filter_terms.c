@@ -5,7 +5,9 @@
 
 #include "imukit/distributions.h"
 #include "imukit/navigation_filter.h"
+#include "imukit/noise.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef struct memory {
@@ -25,6 +27,50 @@ static imk_navigation_filter *start_filter(memory *m, const imk_navigation_filte
     assert_true(imk_navigation_filter_size(s) <= sizeof *m);
     CHECK_OK(imk_navigation_filter_start(s, start, &filter, m, sizeof *m, &error));
     return filter;
+}
+
+/* The parts together have the variance of means and the Allan variance of the generated flicker,
+ * whose sums are exact; what is faster than 3 s is left out, hence the tolerances. */
+static void test_flicker_parts(void **state)
+{
+    (void)state;
+    static const struct {
+        double longest, constant;
+        size_t parts;
+        double tau, mean, allan; /* tolerances of standard deviations */
+    } cases[] = {
+        /* ln((pi/2) T/10^4.5)/pi */
+        {0.0, 1.2431, 5, 100.0, 0.01, 0.03},  {1e6, 1.2431, 5, 3000.0, 0.01, 0.03},
+        {1e8, 2.7090, 5, 1000.0, 0.01, 0.03}, {1e4, 0.0, 5, 1000.0, 0.03, 0.03},
+        {1e3, 0.0, 4, 300.0, 0.04, 0.03},     {100.0, 0.0, 3, 100.0, 0.07, 0.07},
+        {1.0, 0.0, 1, 100.0, 1.01, 1.01},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        imk_model model;
+        imk_model_default(&model);
+        set3(model.gyro.noise.bias_instability.value, 1.0);
+        model.gyro.noise.bias_instability_correlation_time.value = cases[c].longest;
+        imk_navigation_filter_settings s;
+        imk_navigation_filter_default(&s);
+        CHECK_OK(imk_navigation_filter_describe(&model, 0.01, (imk_vector3){{0}},
+                                                (imk_vector3){{0}}, &s, NULL));
+        assert_int_equal(s.gyro.part_count, cases[c].parts);
+        const double constant = s.gyro.part[0].sigma[0] * s.gyro.part[0].sigma[0];
+        CHECK_CLOSE(constant, cases[c].constant, 1e-4);
+        double mean = constant, allan = 0.0;
+        for (size_t p = 1; p < s.gyro.part_count; p++) {
+            const double time = s.gyro.part[p].correlation_time, a = cases[c].tau / time;
+            const double sigma = s.gyro.part[p].sigma[0];
+            mean += 2.0 * sigma * sigma * (a - 1.0 + exp(-a)) / (a * a);
+            allan += imk_gauss_markov_allan_variance((imk_gauss_markov){sigma, time}, cases[c].tau);
+        }
+        const imk_flicker flicker = {1.0, cases[c].longest};
+        const double dt = cases[c].tau / 1000.0;
+        CHECK_RELATIVE(sqrt(mean), sqrt(imk_flicker_mean_variance(flicker, dt, 1000)),
+                       cases[c].mean);
+        CHECK_RELATIVE(sqrt(allan), sqrt(imk_flicker_sampled_allan_variance(flicker, dt, 1000)),
+                       cases[c].allan);
+    }
 }
 
 /* The limits: a mean of 1 and a variance of 2/30 are a chi-square variable of 30 degrees over 30;
@@ -259,9 +305,13 @@ static void test_short_correlation(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_standstill_limits), cmocka_unit_test(test_rotation),
-        cmocka_unit_test(test_velocity_noise),    cmocka_unit_test(test_rest),
-        cmocka_unit_test(test_coriolis),          cmocka_unit_test(test_short_correlation),
+        cmocka_unit_test(test_flicker_parts),
+        cmocka_unit_test(test_standstill_limits),
+        cmocka_unit_test(test_rotation),
+        cmocka_unit_test(test_velocity_noise),
+        cmocka_unit_test(test_rest),
+        cmocka_unit_test(test_coriolis),
+        cmocka_unit_test(test_short_correlation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
