@@ -59,7 +59,8 @@ IMK_API size_t imk_reference_offset_workspace_size(const imk_test_record *record
  *  fraction of a sample. Every axis may respond to every component of its reference with any factor
  *  and either sign, so units, nominal directions and exchanged axes do not matter. Gyros are
  *  compared with reference_rate and accelerometers with reference_force, as far as the record has
- *  them and they vary. The record's samples must be equally spaced except for gaps.
+ *  them and they vary. The record's samples must be equally spaced except for gaps. Of shifts that
+ *  fit equally well, as with steps of equal length, the least is taken; the others are rivals.
  *  @return IMK_ERROR_KEY_MISSING (field "reference"), IMK_ERROR_CONSTANT (reference or readings
  *          never change), IMK_ERROR_TOO_SHORT (less than three times max_shift), IMK_ERROR_RANGE
  *          (max_shift), IMK_ERROR_WORKSPACE */
