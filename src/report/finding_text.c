@@ -405,8 +405,16 @@ static const struct message {
                 "was no update"},
     {"model_too_good", "the innovations are {0.1f} times as large as the model predicts (squared: "
                        "{1.1f}): the errors in the model are too small"},
-    {"left_the_earth", "at {0.3f} s the estimate is no longer near the Earth: an earlier reading "
-                       "is absurd, or its unit is wrong"},
+    {"left_the_earth",
+     "at {0.3f} s the estimate is no longer near the Earth: it moves at {1.2g} m/s, {2.2g} m above "
+     "the ellipsoid: an earlier reading is absurd; check the units of the log's columns, --position"
+     "{3?}, and of the aid its latitude and longitude, or north and east, which may be swapped, "
+     "its signs and --aid-lever-arm{?}"},
+    {"sigma_lost",
+     "at {0.3f} s a variance of the estimate is no longer above 0: the readings contradict each "
+     "other; check the units of the log's columns, --position, and of the aid its latitude and "
+     "longitude, or north and east, which may be swapped, its signs, its sigmas and "
+     "--aid-lever-arm"},
     /* aid_columns.c, aid_readings.c, navigate_aids.c */
     {"aid_unit",
      "column {name} has no unit: write it into the header, such as {name} [{other}], or "

@@ -31,6 +31,10 @@ static void put_drive(void)
                      " noise: {angle_random_walk: 0.1 deg/sqrt(h)}}\n"
                      "accel: {bias: {repeatability: 0.5 mg}, noise: {density: two-sided,"
                      " velocity_random_walk: 50 ug/sqrt(Hz)}}\n");
+}
+
+static void simulate_drive(void)
+{
     assert_int_equal(run("$I simulate unit.yaml --motion drive.yaml --rate 50Hz --seed 4 --truth "
                          "truth.csv -o drive.csv --aid 'position 1 1 2 m, velocity 0.05 m/s' "
                          "--aid-lever-arm '1 -0.5 -1.5 m' --aid-output gnss.csv"),
@@ -42,6 +46,10 @@ static void put_drive(void)
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
     "gnss.csv --aid-lever-arm '1 -0.5 -1.5 m' "
 
+#define SWAPPED                                                                                    \
+    "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model tactical --aid "  \
+    "swapped.csv "
+
 /* 142 readings after the alignment: 426 degrees of freedom, whose mean square is 1 with a standard
  * deviation of sqrt(2/426) = 0.07, and correlations of 0.05; four of these are allowed. The end is
  * where the truth is, to five of the sigmas that the command states; so is its height. */
@@ -49,6 +57,7 @@ static void test_drive(void **state)
 {
     (void)state;
     put_drive();
+    simulate_drive();
     assert_int_equal(run(DRIVE "--json -o track.csv"), 0);
     assert_string_equal(err, "");
     const char *aids = strstr(out, "\"aids\"");
@@ -84,6 +93,25 @@ static void test_drive(void **state)
     /* An outage: compared, and told. */
     assert_int_equal(run(DRIVE "--aid-until 100s"), 0);
     check_contains(out, "s without aids the estimate is off the position read by north", "outage");
+    sweep();
+}
+
+/* Columns in each other's place: an estimate that no reading fits is refused, not shown. Here the
+ * filter is moved to readings that contradict each other until its velocity is beyond any vehicle's
+ * or its variances are spent, whichever is first. */
+static void test_swapped(void **state)
+{
+    (void)state;
+    put_drive();
+    assert_int_equal(run("sed -i 's/hold 60 s/hold 300 s/' drive.yaml"), 0);
+    simulate_drive();
+    assert_int_equal(run("awk -F, -v OFS=, 'NR > 1 {x = $2; $2 = $3; $3 = x} {print}' gnss.csv > "
+                         "swapped.csv"),
+                     0);
+    assert_int_equal(run(SWAPPED), 1);
+    check_contains(err, "error: drive.csv: at ", "where");
+    check_contains(err, "latitude and longitude, or north and east, which may be swapped", "what");
+    assert_string_equal(out, "");
     sweep();
 }
 
@@ -193,7 +221,8 @@ static void test_refusals(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_drive), cmocka_unit_test(test_columns),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_drive), cmocka_unit_test(test_swapped),
+                                       cmocka_unit_test(test_columns),
                                        cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
