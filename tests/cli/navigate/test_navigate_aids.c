@@ -207,6 +207,9 @@ static void test_refusals(void **state)
         assert_int_equal(run(line), tables[k].code);
         check_contains(err, tables[k].expected, tables[k].header);
     }
+    assert_int_equal(run(REST "--model unit.yaml --aid aid.csv --aid second.csv"), 2);
+    check_contains(err, "--aid is given twice, aid.csv and second.csv, but it takes one file",
+                   "two files");
     assert_int_equal(run(REST "--aid-sigma 'position 1 m'"), 2);
     check_contains(err, "--aid-sigma is about --aid FILE", "without a file");
     assert_int_equal(run(REST "--aid aid.csv"), 2);
