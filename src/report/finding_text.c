@@ -442,6 +442,14 @@ static const struct message {
     {"aid_disordered", "{name} in {other}: {0} of {1} readings are not later than the one before: "
                        "left out"},
     {"aid_skipped", "{name} in {other}: {0} of {1} readings cannot be used: left out"},
+    {"aid_unused",
+     "{name} in {other}: none of {0} readings is used: they are from {1.6g} to {2.6g} s, and the "
+     "log is navigated from {3.6g} to {4.6g} s{5?}; --aid-until leaves none{5!}; check the time "
+     "column and its unit, --align and --aid-delay{?}"},
+    {"aid_time_unit",
+     "{name} in {other}: {0} of {1} readings are used: they are from {2.6g} to {3.6g} s, and the "
+     "log is from {4.6g} to {5.6g} s, which differ by a factor of 1000 as ms and s do: check the "
+     "units of both time columns, and write the true one into the header"},
     {"aid_start_off", "the first position in {other} is {0.4g} m from --position; the position at "
                       "the start is taken to be so uncertain"},
     {"aid_refused", "{name} in {other}: {0} of {1} readings were refused because they do not fit "

@@ -14,6 +14,9 @@ static const double far_off = 100.0, far_sigmas = 5.0;
 /* So many readings refused in a row at the end, and a share of them in all, are told. */
 enum { REFUSED_MAX = 20, REFUSED_FEW = 5 };
 static const double refused_share = 0.005;
+/* Spans of the readings and the log that are as 1000 to 1, within this factor: ms are taken for s.
+ */
+static const double thousand = 1000.0, thousand_within = 1.25;
 /* A correlation from reading to reading that is told, beyond this many of its own sigma. */
 static const double correlation_told = 0.2, correlation_sigmas = 4.0;
 
@@ -188,6 +191,31 @@ void imki_aids_update(imk_navigate_log *n, imki_navigate_aids *aids, imk_navigat
     }
 }
 
+/* Readings at other times than those navigated: none is used, or the whole table is within an
+ * instant of the log, or the log within one of the table. */
+static void tell_unused(imk_navigate_log *n, const imk_navigate_aid *a, const imki_aid_series *s)
+{
+    const double begin = imki_navigate_row_time(n, 0);
+    const double end = imki_navigate_row_time(n, n->record.rows - 1);
+    if (s->count == 0)
+        return;
+    const double first = s->reading[0].time, last = s->reading[s->count - 1].time;
+    const size_t used = a->counts.accepted + a->counts.refused;
+    const double ratio =
+        last > first ? fabs(log((end - begin) / (last - first)) / log(thousand)) : 0.0;
+    const bool unit =
+        s->count > REFUSED_MAX && fabs(ratio - 1.0) < log(thousand_within) / log(thousand);
+    const bool unused = used == 0 && a->outside + a->compared == s->count;
+    const char *name = imk_aid_kind_name(a->aid.kind);
+    const double count = (double)s->count;
+    if (unit)
+        imki_aid_find(n, IMK_FINDING_WARNING, "aid_time_unit", name,
+                      IMKI_NUMBERS((double)used, count, first, last, begin, end));
+    else if (unused)
+        imki_aid_find(n, IMK_FINDING_WARNING, "aid_unused", name,
+                      IMKI_NUMBERS(count, first, last, start_time(n), end, a->compared > 0));
+}
+
 static void tell(imk_navigate_log *n, const imk_navigate_aid *a)
 {
     const imk_navigation_filter_counts *c = &a->counts;
@@ -224,6 +252,7 @@ void imki_aids_finish(imk_navigate_log *n, imki_navigate_aids *aids,
     for (size_t k = 0; k < n->aid_count; k++) {
         n->aid[k].counts = imk_navigation_filter_aided(filter, k);
         n->aid[k].outside += aids->series[k].count - aids->series[k].next;
+        tell_unused(n, &n->aid[k], &aids->series[k]);
         tell(n, &n->aid[k]);
     }
 }

@@ -46,6 +46,9 @@ static void simulate_drive(void)
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
     "gnss.csv --aid-lever-arm '1 -0.5 -1.5 m' "
 
+#define MILLISECONDS                                                                               \
+    "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
+    "ms.csv --strict"
 #define SWAPPED                                                                                    \
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model tactical --aid "  \
     "swapped.csv "
@@ -90,6 +93,14 @@ static void test_drive(void **state)
     assert_int_equal(sscanf(out, "%lf %lf %lf %lf", s, s + 1, s + 2, s + 3), 4);
     CHECK_BELOW(s[2], 0.9 * s[0]);
     CHECK_CLOSE(s[3], s[1], 1e-4);
+    /* Times that are called ms and are s: the whole table is within 0.2 s of the log's begin. */
+    assert_int_equal(run("sed 's/^time \\[s\\]/time [ms]/' gnss.csv > ms.csv; " MILLISECONDS), 1);
+    check_contains(
+        err, "position in ms.csv: 0 of 174 readings are used: they are from 0 to 0.173 s", "ms");
+    check_contains(err, "differ by a factor of 1000 as ms and s do", "ms");
+    assert_int_equal(run(DRIVE "--strict --aid-until 10s"), 1);
+    check_contains(err, "none of 174 readings is used", "aligned for longer");
+    check_contains(err, "--aid-until leaves none", "aligned for longer");
     /* An outage: compared, and told. */
     assert_int_equal(run(DRIVE "--aid-until 100s"), 0);
     check_contains(out, "s without aids the estimate is off the position read by north", "outage");
