@@ -450,8 +450,13 @@ static const struct message {
      "{name} in {other}: {0} of {1} readings are used: they are from {2.6g} to {3.6g} s, and the "
      "log is from {4.6g} to {5.6g} s, which differ by a factor of 1000 as ms and s do: check the "
      "units of both time columns, and write the true one into the header"},
-    {"aid_start_off", "the first position in {other} is {0.4g} m from --position; the position at "
-                      "the start is taken to be so uncertain"},
+    {"aid_start_off",
+     "the first position in {other} is {0.4g} m from --position; the position at the start is "
+     "taken "
+     "to be so uncertain{1?}; with latitude and longitude exchanged it would be there: they are "
+     "probably swapped, in the table or in --position{?}{2?}; with the other sign of the latitude "
+     "it would be there: one of the two signs is probably wrong{?}{3?}; with the other sign of the "
+     "longitude it would be there: one of the two signs is probably wrong{?}"},
     {"aid_refused", "{name} in {other}: {0} of {1} readings were refused because they do not fit "
                     "the prediction, first at {2.1f} s: they are wrong then, or the sigmas or the "
                     "errors in the model are too small"},

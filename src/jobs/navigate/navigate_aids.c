@@ -11,6 +11,8 @@ static const double aided_step = 0.1; /* [s] */
 static const double soon = 5.0;
 /* From this distance on, and so many sigma, a start is said to be elsewhere [m]. */
 static const double far_off = 100.0, far_sigmas = 5.0;
+/* From the start to a place that is meant to be there [m]. */
+static const double near_start = 1e4;
 /* So many readings refused in a row at the end, and a share of them in all, are told. */
 enum { REFUSED_MAX = 20, REFUSED_FEW = 5 };
 static const double refused_share = 0.005;
@@ -100,6 +102,23 @@ void imki_aids_describe(const imk_navigate_log *n, const imki_navigate_aids *aid
     }
 }
 
+/* Is a place near the start? By the chord. */
+static bool is_near(const imk_navigate_log *n, double latitude, double longitude)
+{
+    const imk_geodetic place = {latitude, longitude, n->settings.place.height};
+    return imk_vector3_norm(
+               imk_vector3_subtract(imk_ecef_from_geodetic(place), n->start.position)) < near_start;
+}
+
+/* Of a first position far from the start: would a common slip in it explain that? */
+static void tell_start(imk_navigate_log *n, double distance, const double value[3])
+{
+    const bool swapped = is_near(n, value[1], value[0]);
+    const bool south = is_near(n, -value[0], value[1]), west = is_near(n, value[0], -value[1]);
+    imki_aid_find(n, IMK_FINDING_WARNING, "aid_start_off", "position",
+                  IMKI_NUMBERS(distance, swapped, south, west));
+}
+
 static void warn_of_start(imk_navigate_log *n, const imki_navigate_aids *aids)
 {
     for (size_t k = 0; k < n->aid_count; k++) {
@@ -112,8 +131,7 @@ static void warn_of_start(imk_navigate_log *n, const imki_navigate_aids *aids)
         const imk_vector3 off = imk_navigation_difference_ned(&there, &n->start);
         const double distance = hypot(off.v[0], off.v[1]);
         if (distance > far_off && distance > far_sigmas * sigma_of(&n->aid[k].aid, reading, 0))
-            imki_aid_find(n, IMK_FINDING_WARNING, "aid_start_off", "position",
-                          IMKI_NUMBERS(distance));
+            tell_start(n, distance, reading->value);
     }
 }
 

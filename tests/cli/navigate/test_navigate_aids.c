@@ -49,6 +49,7 @@ static void simulate_drive(void)
 #define MILLISECONDS                                                                               \
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
     "ms.csv --strict"
+#define ANYWHERE "--align 25s --heading '91 +- 2 deg' --model unit.yaml --aid gnss.csv"
 #define SWAPPED                                                                                    \
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model tactical --aid "  \
     "swapped.csv "
@@ -122,7 +123,14 @@ static void test_swapped(void **state)
     assert_int_equal(run(SWAPPED), 1);
     check_contains(err, "error: drive.csv: at ", "where");
     check_contains(err, "latitude and longitude, or north and east, which may be swapped", "what");
+    check_contains(err, "with latitude and longitude exchanged it would be there", "swapped");
     assert_string_equal(out, "");
+    run("$I navigate drive.csv --position '-45 deg, 7 deg, 300 m' " ANYWHERE);
+    check_contains(err, "with the other sign of the latitude it would be there", "south");
+    run("$I navigate drive.csv --position '45 deg, -7 deg, 300 m' " ANYWHERE);
+    check_contains(err, "with the other sign of the longitude it would be there", "west");
+    run("$I navigate drive.csv --position '46 deg, 7 deg, 300 m' " ANYWHERE);
+    check_contains(err, "is taken to be so uncertain\n", "elsewhere");
     sweep();
 }
 
