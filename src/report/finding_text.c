@@ -466,10 +466,11 @@ static const struct message {
                  "or the readings are wrong"},
     {"aid_too_good", "{name} in {other}: the innovations are {0.1f} times as large as predicted "
                      "(squared: {1.1f}): its sigma, or the errors in the model, are too small"},
-    {"aid_correlated", "{name} in {other}: an innovation has {0.0f} % of the one before in it: its "
-                       "errors are not independent from reading to reading, so that the estimate "
-                       "is worse than predicted; state how, such as --aid-sigma \"position 1 m "
-                       "correlated 2 m over 60 s\", or use fewer readings (--aid-interval)"},
+    {"aid_correlated",
+     "{name} in {other}: an innovation has {0.0f} % of the one before in it: its errors are not "
+     "independent from reading to reading, so that the estimate is worse than predicted; state "
+     "how, as in --aid-sigma \"{name} SIGMA correlated SIGMA over TIME\", or use fewer readings "
+     "(--aid-interval)"},
     /* calibrate: session_record.c */
     {"calibrate:time_order",
      "{record}: {0} rows whose time does not increase, or is not a number, are left out"},

@@ -50,6 +50,9 @@ static void simulate_drive(void)
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
     "ms.csv --strict"
 #define ANYWHERE "--align 25s --heading '91 +- 2 deg' --model unit.yaml --aid gnss.csv"
+#define SLOW                                                                                       \
+    "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
+    "slow.csv --aid-sigma 'velocity 0.1 m/s' --aid-lever-arm '1 -0.5 -1.5 m'"
 #define SWAPPED                                                                                    \
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model tactical --aid "  \
     "swapped.csv "
@@ -131,6 +134,11 @@ static void test_swapped(void **state)
     check_contains(err, "with the other sign of the longitude it would be there", "west");
     run("$I navigate drive.csv --position '46 deg, 7 deg, 300 m' " ANYWHERE);
     check_contains(err, "is taken to be so uncertain\n", "elsewhere");
+    /* An error that goes round in 60 readings: the advice is for the kind that has it. */
+    assert_int_equal(run("awk -F, -v OFS=, 'NR > 1 {$10 += 0.15 * sin(NR / 10)} {print}' gnss.csv "
+                         "> slow.csv; " SLOW),
+                     0);
+    check_contains(err, "--aid-sigma \"velocity SIGMA correlated SIGMA over TIME\"", "velocity");
     sweep();
 }
 
