@@ -441,6 +441,8 @@ static const struct message {
     {"aid_damaged", "{0} row{0s} of {name} cannot be read and are left out"},
     {"aid_disordered", "{name} in {other}: {0} of {1} readings are not later than the one before: "
                        "left out"},
+    {"aid_order", "{0} of {1} readings of the {name} are not later than the one before: sort the "
+                  "rows by time, and check that the time column is the right one"},
     {"aid_skipped", "{name} in {other}: {0} of {1} readings cannot be used: left out"},
     {"aid_unused",
      "{name} in {other}: none of {0} readings is used: they are from {1.6g} to {2.6g} s, and the "

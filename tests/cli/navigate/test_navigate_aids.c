@@ -134,6 +134,11 @@ static void test_swapped(void **state)
     check_contains(err, "with the other sign of the longitude it would be there", "west");
     run("$I navigate drive.csv --position '46 deg, 7 deg, 300 m' " ANYWHERE);
     check_contains(err, "is taken to be so uncertain\n", "elsewhere");
+    assert_int_equal(run("(head -1 gnss.csv; tail -n +2 gnss.csv | tac) > back.csv; $I navigate "
+                         "drive.csv " PLACE " --align 25s --model unit.yaml --aid back.csv"),
+                     1);
+    check_contains(err, "error: back.csv: 413 of 414 readings of the position are not later than ",
+                   "backwards");
     /* An error that goes round in 60 readings: the advice is for the kind that has it. */
     assert_int_equal(run("awk -F, -v OFS=, 'NR > 1 {$10 += 0.15 * sin(NR / 10)} {print}' gnss.csv "
                          "> slow.csv; " SLOW),
