@@ -219,6 +219,19 @@ static int add_text(const option *o, const char *text, option_texts *texts)
     return -1;
 }
 
+/* A second file would take the place of the first unseen. */
+static int set_file(const option *o, const char *text, const char **target)
+{
+    if (!*text)
+        return command_misused("--%s: the value is empty", o->name);
+    if (*target)
+        return command_misused("--%s is given twice, %s and %s, but it takes one file: leave one "
+                               "out, or make one file of both",
+                               o->name, *target, text);
+    *target = text;
+    return -1;
+}
+
 static int set_value(const option *o, const option_group *group, const char *text, void *settings)
 {
     void *target = (char *)settings + group->offset + o->offset;
@@ -228,8 +241,9 @@ static int set_value(const option *o, const option_group *group, const char *tex
         return -1;
     case OPTION_TEXTS:
         return add_text(o, text, target);
-    case OPTION_TEXT:
     case OPTION_FILE:
+        return set_file(o, text, target);
+    case OPTION_TEXT:
     case OPTION_INTO:
     case OPTION_OUTPUT:
         if (!*text)

@@ -405,8 +405,16 @@ static const struct message {
                 "was no update"},
     {"model_too_good", "the innovations are {0.1f} times as large as the model predicts (squared: "
                        "{1.1f}): the errors in the model are too small"},
-    {"left_the_earth", "at {0.3f} s the estimate is no longer near the Earth: an earlier reading "
-                       "is absurd, or its unit is wrong"},
+    {"left_the_earth",
+     "at {0.3f} s the estimate is no longer near the Earth: it moves at {1.2g} m/s, {2.2g} m above "
+     "the ellipsoid: an earlier reading is absurd; check the units of the log's columns, --position"
+     "{3?}, and of the aid its latitude and longitude, or north and east, which may be swapped, "
+     "its signs and --aid-lever-arm{?}"},
+    {"sigma_lost",
+     "at {0.3f} s a variance of the estimate is no longer above 0: the readings contradict each "
+     "other; check the units of the log's columns, --position, and of the aid its latitude and "
+     "longitude, or north and east, which may be swapped, its signs, its sigmas and "
+     "--aid-lever-arm"},
     /* aid_columns.c, aid_readings.c, navigate_aids.c */
     {"aid_unit",
      "column {name} has no unit: write it into the header, such as {name} [{other}], or "
@@ -433,9 +441,24 @@ static const struct message {
     {"aid_damaged", "{0} row{0s} of {name} cannot be read and are left out"},
     {"aid_disordered", "{name} in {other}: {0} of {1} readings are not later than the one before: "
                        "left out"},
+    {"aid_order", "{0} of {1} readings of the {name} are not later than the one before: sort the "
+                  "rows by time, and check that the time column is the right one"},
     {"aid_skipped", "{name} in {other}: {0} of {1} readings cannot be used: left out"},
-    {"aid_start_off", "the first position in {other} is {0.4g} m from --position; the position at "
-                      "the start is taken to be so uncertain"},
+    {"aid_unused",
+     "{name} in {other}: none of {0} readings is used: they are from {1.6g} to {2.6g} s, and the "
+     "log is navigated from {3.6g} to {4.6g} s{5?}; --aid-until leaves none{5!}; check the time "
+     "column and its unit, --align and --aid-delay{?}"},
+    {"aid_time_unit",
+     "{name} in {other}: {0} of {1} readings are used: they are from {2.6g} to {3.6g} s, and the "
+     "log is from {4.6g} to {5.6g} s, which differ by a factor of 1000 as ms and s do: check the "
+     "units of both time columns, and write the true one into the header"},
+    {"aid_start_off",
+     "the first position in {other} is {0.4g} m from --position; the position at the start is "
+     "taken "
+     "to be so uncertain{1?}; with latitude and longitude exchanged it would be there: they are "
+     "probably swapped, in the table or in --position{?}{2?}; with the other sign of the latitude "
+     "it would be there: one of the two signs is probably wrong{?}{3?}; with the other sign of the "
+     "longitude it would be there: one of the two signs is probably wrong{?}"},
     {"aid_refused", "{name} in {other}: {0} of {1} readings were refused because they do not fit "
                     "the prediction, first at {2.1f} s: they are wrong then, or the sigmas or the "
                     "errors in the model are too small"},
@@ -445,10 +468,11 @@ static const struct message {
                  "or the readings are wrong"},
     {"aid_too_good", "{name} in {other}: the innovations are {0.1f} times as large as predicted "
                      "(squared: {1.1f}): its sigma, or the errors in the model, are too small"},
-    {"aid_correlated", "{name} in {other}: an innovation has {0.0f} % of the one before in it: its "
-                       "errors are not independent from reading to reading, so that the estimate "
-                       "is worse than predicted; state how, such as --aid-sigma \"position 1 m "
-                       "correlated 2 m over 60 s\", or use fewer readings (--aid-interval)"},
+    {"aid_correlated",
+     "{name} in {other}: an innovation has {0.0f} % of the one before in it: its errors are not "
+     "independent from reading to reading, so that the estimate is worse than predicted; state "
+     "how, as in --aid-sigma \"{name} SIGMA correlated SIGMA over TIME\", or use fewer readings "
+     "(--aid-interval)"},
     /* calibrate: session_record.c */
     {"calibrate:time_order",
      "{record}: {0} rows whose time does not increase, or is not a number, are left out"},

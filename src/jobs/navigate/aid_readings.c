@@ -173,6 +173,15 @@ static bool describe_kind(const imk_navigate_log *n, imk_aid_kind kind, columns_
     return true;
 }
 
+/* Few readings out of order are left out; where most are, what remains is not the table. */
+static imk_status fail_order(imk_navigate_log *n, imk_aid_kind kind, const imk_navigate_aid *made,
+                             imk_error *error)
+{
+    return imki_fail(&n->findings, error, IMK_ERROR_TIME_ORDER, "aid_order",
+                     imk_aid_kind_name(kind),
+                     IMKI_NUMBERS((double)made->disordered, (double)made->readings));
+}
+
 /* @param left  the name of a kind that has no sigma */
 static imk_status load_kind(imk_navigate_log *n, imk_aid_kind kind, columns_of_kind *k,
                             imki_navigate_aids *aids, imki_arena *scratch, const char **left,
@@ -199,6 +208,8 @@ static imk_status load_kind(imk_navigate_log *n, imk_aid_kind kind, columns_of_k
                                                made->sigma_columns, &n->findings, error);
     if (status == IMK_OK)
         status = fill_series(n, k, made, &aids->series[n->aid_count], scratch, error);
+    if (status == IMK_OK && 2 * made->disordered > made->readings)
+        status = fail_order(n, kind, made, error);
     n->aid_count += status == IMK_OK;
     return status;
 }

@@ -11,9 +11,14 @@ static const double aided_step = 0.1; /* [s] */
 static const double soon = 5.0;
 /* From this distance on, and so many sigma, a start is said to be elsewhere [m]. */
 static const double far_off = 100.0, far_sigmas = 5.0;
+/* From the start to a place that is meant to be there [m]. */
+static const double near_start = 1e4;
 /* So many readings refused in a row at the end, and a share of them in all, are told. */
 enum { REFUSED_MAX = 20, REFUSED_FEW = 5 };
 static const double refused_share = 0.005;
+/* Spans of the readings and the log that are as 1000 to 1, within this factor: ms are taken for s.
+ */
+static const double thousand = 1000.0, thousand_within = 1.25;
 /* A correlation from reading to reading that is told, beyond this many of its own sigma. */
 static const double correlation_told = 0.2, correlation_sigmas = 4.0;
 
@@ -97,6 +102,23 @@ void imki_aids_describe(const imk_navigate_log *n, const imki_navigate_aids *aid
     }
 }
 
+/* Is a place near the start? By the chord. */
+static bool is_near(const imk_navigate_log *n, double latitude, double longitude)
+{
+    const imk_geodetic place = {latitude, longitude, n->settings.place.height};
+    return imk_vector3_norm(
+               imk_vector3_subtract(imk_ecef_from_geodetic(place), n->start.position)) < near_start;
+}
+
+/* Of a first position far from the start: would a common slip in it explain that? */
+static void tell_start(imk_navigate_log *n, double distance, const double value[3])
+{
+    const bool swapped = is_near(n, value[1], value[0]);
+    const bool south = is_near(n, -value[0], value[1]), west = is_near(n, value[0], -value[1]);
+    imki_aid_find(n, IMK_FINDING_WARNING, "aid_start_off", "position",
+                  IMKI_NUMBERS(distance, swapped, south, west));
+}
+
 static void warn_of_start(imk_navigate_log *n, const imki_navigate_aids *aids)
 {
     for (size_t k = 0; k < n->aid_count; k++) {
@@ -109,8 +131,7 @@ static void warn_of_start(imk_navigate_log *n, const imki_navigate_aids *aids)
         const imk_vector3 off = imk_navigation_difference_ned(&there, &n->start);
         const double distance = hypot(off.v[0], off.v[1]);
         if (distance > far_off && distance > far_sigmas * sigma_of(&n->aid[k].aid, reading, 0))
-            imki_aid_find(n, IMK_FINDING_WARNING, "aid_start_off", "position",
-                          IMKI_NUMBERS(distance));
+            tell_start(n, distance, reading->value);
     }
 }
 
@@ -188,6 +209,31 @@ void imki_aids_update(imk_navigate_log *n, imki_navigate_aids *aids, imk_navigat
     }
 }
 
+/* Readings at other times than those navigated: none is used, or the whole table is within an
+ * instant of the log, or the log within one of the table. */
+static void tell_unused(imk_navigate_log *n, const imk_navigate_aid *a, const imki_aid_series *s)
+{
+    const double begin = imki_navigate_row_time(n, 0);
+    const double end = imki_navigate_row_time(n, n->record.rows - 1);
+    if (s->count == 0)
+        return;
+    const double first = s->reading[0].time, last = s->reading[s->count - 1].time;
+    const size_t used = a->counts.accepted + a->counts.refused;
+    const double ratio =
+        last > first ? fabs(log((end - begin) / (last - first)) / log(thousand)) : 0.0;
+    const bool unit =
+        s->count > REFUSED_MAX && fabs(ratio - 1.0) < log(thousand_within) / log(thousand);
+    const bool unused = used == 0 && a->outside + a->compared == s->count;
+    const char *name = imk_aid_kind_name(a->aid.kind);
+    const double count = (double)s->count;
+    if (unit)
+        imki_aid_find(n, IMK_FINDING_WARNING, "aid_time_unit", name,
+                      IMKI_NUMBERS((double)used, count, first, last, begin, end));
+    else if (unused)
+        imki_aid_find(n, IMK_FINDING_WARNING, "aid_unused", name,
+                      IMKI_NUMBERS(count, first, last, start_time(n), end, a->compared > 0));
+}
+
 static void tell(imk_navigate_log *n, const imk_navigate_aid *a)
 {
     const imk_navigation_filter_counts *c = &a->counts;
@@ -224,6 +270,7 @@ void imki_aids_finish(imk_navigate_log *n, imki_navigate_aids *aids,
     for (size_t k = 0; k < n->aid_count; k++) {
         n->aid[k].counts = imk_navigation_filter_aided(filter, k);
         n->aid[k].outside += aids->series[k].count - aids->series[k].next;
+        tell_unused(n, &n->aid[k], &aids->series[k]);
         tell(n, &n->aid[k]);
     }
 }

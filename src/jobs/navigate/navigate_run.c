@@ -301,14 +301,46 @@ static void warn_of_updates(imk_navigate_log *n, const stops *s)
         imki_find(&n->findings, level, "model_too_good", NULL, IMKI_NUMBERS(sqrt(q), q));
 }
 
+/* Beyond any vehicle: such an estimate is of no use, and no start may be given there [m/s], [m]. */
+static const double speed_lost = 1e5, height_lost = 1e8;
+
+/* Is there a row of which nothing can be said? Compared so that NaN is one. */
+static bool is_lost(const imk_navigate_log *n, size_t row, double speed)
+{
+    for (int k = 0; k < IMK_TRACK_COLUMNS; k++)
+        if (!(fabs(n->track[k][row]) < 1e12))
+            return true;
+    return !(speed < speed_lost) || !(fabs(n->track[IMK_TRACK_HEIGHT][row]) < height_lost);
+}
+
+/* Every reading has a sigma above 0, and so has an estimate from them: a variance that was above 0
+ * and is not any more was made negative by rounding. */
+static bool is_sigma_lost(const imk_navigate_log *n, size_t row)
+{
+    static const int horizontal[] = {0, 1, 3, 4};
+    for (size_t i = 0; i < 4 && row > 0 && n->aid_count > 0; i++) {
+        const double *sigma = n->track[IMK_TRACK_SIGMA + horizontal[i]];
+        if (sigma[row - 1] > 0.0 && !(sigma[row] > 0.0))
+            return true;
+    }
+    return false;
+}
+
 /* An absurd reading makes all that follows absurd. */
 static imk_status check_track(imk_navigate_log *n, imk_error *error)
 {
-    for (size_t row = 0; row < n->track_rows; row++)
-        for (int k = 0; k < IMK_TRACK_COLUMNS; k++)
-            if (!(fabs(n->track[k][row]) < 1e12))
-                return imki_fail(&n->findings, error, IMK_ERROR_NOT_FINITE, "left_the_earth", NULL,
-                                 IMKI_NUMBERS(n->track[IMK_TRACK_TIME][row]));
+    for (size_t row = 0; row < n->track_rows; row++) {
+        double *const *v = &n->track[IMK_TRACK_VELOCITY];
+        const double time = n->track[IMK_TRACK_TIME][row];
+        const double speed = hypot(hypot(v[0][row], v[1][row]), v[2][row]);
+        if (is_lost(n, row, speed))
+            return imki_fail(&n->findings, error, IMK_ERROR_NOT_FINITE, "left_the_earth", NULL,
+                             IMKI_NUMBERS(time, speed, n->track[IMK_TRACK_HEIGHT][row],
+                                          (double)(n->aid_count > 0)));
+        if (is_sigma_lost(n, row))
+            return imki_fail(&n->findings, error, IMK_ERROR_NOT_FINITE, "sigma_lost", NULL,
+                             IMKI_NUMBERS(time));
+    }
     return IMK_OK;
 }
 

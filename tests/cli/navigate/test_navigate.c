@@ -199,9 +199,9 @@ static void test_units(void **state)
                          "> absurd.csv; $I navigate absurd.csv " PLACE " --align 15s "
                          "--align-method means -o track.csv"),
                      1);
-    assert_string_equal(err,
-                        "imukit navigate: error: absurd.csv: at 20.000 s the estimate is no longer "
-                        "near the Earth: an earlier reading is absurd, or its unit is wrong\n");
+    check_contains(
+        err, "error: absurd.csv: at 20.000 s the estimate is no longer near the Earth: ", "absurd");
+    check_contains(err, "check the units of the log's columns, --position\n", "no aid");
     assert_int_equal(access("track.csv", F_OK), -1);
     assert_int_equal(run("sed -i 's/1e50/1e200/g' absurd.csv; $I navigate absurd.csv " PLACE
                          " --align 15s --align-method means -o track.csv"),

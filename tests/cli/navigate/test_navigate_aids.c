@@ -31,6 +31,10 @@ static void put_drive(void)
                      " noise: {angle_random_walk: 0.1 deg/sqrt(h)}}\n"
                      "accel: {bias: {repeatability: 0.5 mg}, noise: {density: two-sided,"
                      " velocity_random_walk: 50 ug/sqrt(Hz)}}\n");
+}
+
+static void simulate_drive(void)
+{
     assert_int_equal(run("$I simulate unit.yaml --motion drive.yaml --rate 50Hz --seed 4 --truth "
                          "truth.csv -o drive.csv --aid 'position 1 1 2 m, velocity 0.05 m/s' "
                          "--aid-lever-arm '1 -0.5 -1.5 m' --aid-output gnss.csv"),
@@ -42,6 +46,17 @@ static void put_drive(void)
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
     "gnss.csv --aid-lever-arm '1 -0.5 -1.5 m' "
 
+#define MILLISECONDS                                                                               \
+    "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
+    "ms.csv --strict"
+#define ANYWHERE "--align 25s --heading '91 +- 2 deg' --model unit.yaml --aid gnss.csv"
+#define SLOW                                                                                       \
+    "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
+    "slow.csv --aid-sigma 'velocity 0.1 m/s' --aid-lever-arm '1 -0.5 -1.5 m'"
+#define SWAPPED                                                                                    \
+    "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model tactical --aid "  \
+    "swapped.csv "
+
 /* 142 readings after the alignment: 426 degrees of freedom, whose mean square is 1 with a standard
  * deviation of sqrt(2/426) = 0.07, and correlations of 0.05; four of these are allowed. The end is
  * where the truth is, to five of the sigmas that the command states; so is its height. */
@@ -49,6 +64,7 @@ static void test_drive(void **state)
 {
     (void)state;
     put_drive();
+    simulate_drive();
     assert_int_equal(run(DRIVE "--json -o track.csv"), 0);
     assert_string_equal(err, "");
     const char *aids = strstr(out, "\"aids\"");
@@ -81,9 +97,53 @@ static void test_drive(void **state)
     assert_int_equal(sscanf(out, "%lf %lf %lf %lf", s, s + 1, s + 2, s + 3), 4);
     CHECK_BELOW(s[2], 0.9 * s[0]);
     CHECK_CLOSE(s[3], s[1], 1e-4);
+    /* Times that are called ms and are s: the whole table is within 0.2 s of the log's begin. */
+    assert_int_equal(run("sed 's/^time \\[s\\]/time [ms]/' gnss.csv > ms.csv; " MILLISECONDS), 1);
+    check_contains(
+        err, "position in ms.csv: 0 of 174 readings are used: they are from 0 to 0.173 s", "ms");
+    check_contains(err, "differ by a factor of 1000 as ms and s do", "ms");
+    assert_int_equal(run(DRIVE "--strict --aid-until 10s"), 1);
+    check_contains(err, "none of 174 readings is used", "aligned for longer");
+    check_contains(err, "--aid-until leaves none", "aligned for longer");
     /* An outage: compared, and told. */
     assert_int_equal(run(DRIVE "--aid-until 100s"), 0);
     check_contains(out, "s without aids the estimate is off the position read by north", "outage");
+    sweep();
+}
+
+/* Columns in each other's place: an estimate that no reading fits is refused, not shown. Here the
+ * filter is moved to readings that contradict each other until its velocity is beyond any vehicle's
+ * or its variances are spent, whichever is first. */
+static void test_swapped(void **state)
+{
+    (void)state;
+    put_drive();
+    assert_int_equal(run("sed -i 's/hold 60 s/hold 300 s/' drive.yaml"), 0);
+    simulate_drive();
+    assert_int_equal(run("awk -F, -v OFS=, 'NR > 1 {x = $2; $2 = $3; $3 = x} {print}' gnss.csv > "
+                         "swapped.csv"),
+                     0);
+    assert_int_equal(run(SWAPPED), 1);
+    check_contains(err, "error: drive.csv: at ", "where");
+    check_contains(err, "latitude and longitude, or north and east, which may be swapped", "what");
+    check_contains(err, "with latitude and longitude exchanged it would be there", "swapped");
+    assert_string_equal(out, "");
+    run("$I navigate drive.csv --position '-45 deg, 7 deg, 300 m' " ANYWHERE);
+    check_contains(err, "with the other sign of the latitude it would be there", "south");
+    run("$I navigate drive.csv --position '45 deg, -7 deg, 300 m' " ANYWHERE);
+    check_contains(err, "with the other sign of the longitude it would be there", "west");
+    run("$I navigate drive.csv --position '46 deg, 7 deg, 300 m' " ANYWHERE);
+    check_contains(err, "is taken to be so uncertain\n", "elsewhere");
+    assert_int_equal(run("(head -1 gnss.csv; tail -n +2 gnss.csv | tac) > back.csv; $I navigate "
+                         "drive.csv " PLACE " --align 25s --model unit.yaml --aid back.csv"),
+                     1);
+    check_contains(err, "error: back.csv: 413 of 414 readings of the position are not later than ",
+                   "backwards");
+    /* An error that goes round in 60 readings: the advice is for the kind that has it. */
+    assert_int_equal(run("awk -F, -v OFS=, 'NR > 1 {$10 += 0.15 * sin(NR / 10)} {print}' gnss.csv "
+                         "> slow.csv; " SLOW),
+                     0);
+    check_contains(err, "--aid-sigma \"velocity SIGMA correlated SIGMA over TIME\"", "velocity");
     sweep();
 }
 
@@ -179,6 +239,9 @@ static void test_refusals(void **state)
         assert_int_equal(run(line), tables[k].code);
         check_contains(err, tables[k].expected, tables[k].header);
     }
+    assert_int_equal(run(REST "--model unit.yaml --aid aid.csv --aid second.csv"), 2);
+    check_contains(err, "--aid is given twice, aid.csv and second.csv, but it takes one file",
+                   "two files");
     assert_int_equal(run(REST "--aid-sigma 'position 1 m'"), 2);
     check_contains(err, "--aid-sigma is about --aid FILE", "without a file");
     assert_int_equal(run(REST "--aid aid.csv"), 2);
@@ -193,7 +256,8 @@ static void test_refusals(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_drive), cmocka_unit_test(test_columns),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_drive), cmocka_unit_test(test_swapped),
+                                       cmocka_unit_test(test_columns),
                                        cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
