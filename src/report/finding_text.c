@@ -462,8 +462,16 @@ static const struct message {
     {"aid_refused", "{name} in {other}: {0} of {1} readings were refused because they do not fit "
                     "the prediction, first at {2.1f} s: they are wrong then, or the sigmas or the "
                     "errors in the model are too small"},
-    {"aid_recovered", "{name} in {other}: after many refusals in a row the estimate was taken to "
-                      "be wrong, and was moved to the readings, {0} time{0s}, first at {1.1f} s"},
+    {"aid_recovered",
+     "{name} in {other}: after many refusals in a row the estimate was taken to be wrong, and its "
+     "sigmas were enlarged so that a reading fitted, {0} time{0s}, first at {1.1f} s"},
+    {"aid_doubt",
+     "{name} in {other}: {0.2g} % were refused: the sigmas that are stated hold only if those "
+     "readings were wrong and all others right; else look for an offset of time (--aid-delay), a "
+     "wrong lever arm, sigmas that are too small, swapped axes or wrong signs{2?}; those refused "
+     "look about {1.2g} s late, as with --aid-delay={4.2g}s, or with a lever arm that is wrong "
+     "along the way{?}{3?}; those refused look about {1.2g} s early, as with --aid-delay={4.2g}s, "
+     "or with a lever arm that is wrong along the way{?}"},
     {"aid_lost", "{name} in {other}: the last {0} readings were all refused: the estimate is lost, "
                  "or the readings are wrong"},
     {"aid_too_good", "{name} in {other}: the innovations are {0.1f} times as large as predicted "

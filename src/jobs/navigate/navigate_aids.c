@@ -16,6 +16,9 @@ static const double near_start = 1e4;
 /* So many readings refused in a row at the end, and a share of them in all, are told. */
 enum { REFUSED_MAX = 20, REFUSED_FEW = 5 };
 static const double refused_share = 0.005;
+/* A share of refusals that leaves the sigmas of the estimate in doubt; what of the innovations a
+ * delay must explain to be told, and the longest one [s]. */
+static const double doubt_share = 0.1, late_share = 0.3, late_most = 60.0;
 /* Spans of the readings and the log that are as 1000 to 1, within this factor: ms are taken for s.
  */
 static const double thousand = 1000.0, thousand_within = 1.25;
@@ -186,6 +189,23 @@ static void note_innovation(imk_navigate_aid *a, double time, imk_aid_verdict ve
     }
 }
 
+/* Those that were used have drawn the estimate to where they are. */
+static void note_along(imki_aid_series *s, const imk_navigation_state *state,
+                       const imk_innovation *innovation)
+{
+    imk_vector3 velocity;
+    imk_navigation_state_to_ned(state, NULL, &velocity, NULL);
+    for (size_t r = 0; r < innovation->rows; r++) {
+        const double z = innovation->value[r] / innovation->sigma[r];
+        const double v = velocity.v[innovation->axis[r]] / innovation->sigma[r];
+        if (innovation->axis[r] == 2)
+            continue;
+        s->along += z * v;
+        s->along_square += v * v;
+        s->square += z * z;
+    }
+}
+
 void imki_aids_update(imk_navigate_log *n, imki_navigate_aids *aids, imk_navigation_filter *filter,
                       size_t row)
 {
@@ -199,8 +219,12 @@ void imki_aids_update(imk_navigate_log *n, imki_navigate_aids *aids, imk_navigat
             reading.compare = time > until;
             /* From the row on, so that no rounding of the filter's clock comes in. */
             reading.time = imk_navigation_filter_state(filter).time + (time - now);
+            const imk_navigation_state state = imk_navigation_filter_state(filter);
             const imk_aid_verdict verdict = imk_navigation_filter_aid(filter, k, &reading);
             const imk_innovation innovation = imk_navigation_filter_innovation(filter);
+            if (n->aid[k].aid.kind == IMK_AID_POSITION && !reading.compare &&
+                (verdict == IMK_AID_REFUSED || verdict == IMK_AID_RECOVERED))
+                note_along(s, &state, &innovation);
             if (verdict == IMK_AID_NOT_USED)
                 n->aid[k].skipped++;
             else
@@ -232,6 +256,27 @@ static void tell_unused(imk_navigate_log *n, const imk_navigate_aid *a, const im
     else if (unused)
         imki_aid_find(n, IMK_FINDING_WARNING, "aid_unused", name,
                       IMKI_NUMBERS(count, first, last, start_time(n), end, a->compared > 0));
+}
+
+/* By how much the positions that were refused are late, by least squares; 0: not known [s]. */
+static double lateness(const imki_aid_series *s)
+{
+    const double late = s->along / s->along_square;
+    const bool explains = s->along * late > late_share * s->square;
+    return explains && fabs(late) < late_most ? late : 0.0;
+}
+
+/* The sigmas of the estimate are those of readings that were used, if only wrong ones were not. */
+static void tell_doubt(imk_navigate_log *n, const imk_navigate_aid *a, const imki_aid_series *s)
+{
+    const imk_navigation_filter_counts *c = &a->counts;
+    const double refused = (double)c->refused, tried = refused + (double)c->accepted;
+    if (c->recovered < 2 && !(c->refused > REFUSED_MAX && refused > doubt_share * tried))
+        return;
+    const double late = c->refused > REFUSED_MAX ? lateness(s) : 0.0;
+    imki_aid_find(n, IMK_FINDING_WARNING, "aid_doubt", imk_aid_kind_name(a->aid.kind),
+                  IMKI_NUMBERS(100.0 * refused / tried, fabs(late), late > 0.0, late < 0.0,
+                               n->settings.aid_delay + late));
 }
 
 static void tell(imk_navigate_log *n, const imk_navigate_aid *a)
@@ -272,5 +317,6 @@ void imki_aids_finish(imk_navigate_log *n, imki_navigate_aids *aids,
         n->aid[k].outside += aids->series[k].count - aids->series[k].next;
         tell_unused(n, &n->aid[k], &aids->series[k]);
         tell(n, &n->aid[k]);
+        tell_doubt(n, &n->aid[k], &aids->series[k]);
     }
 }

@@ -9,6 +9,9 @@
 typedef struct imki_aid_series {
     size_t count, next;
     imk_aid_reading *reading;
+    /* Of positions refused, horizontally, weighted by the predicted sigmas: innovation by velocity,
+     * velocity by itself, innovation by itself. A reading that is d late is d v behind. */
+    double along, along_square, square;
 } imki_aid_series;
 
 typedef struct imki_navigate_aids {

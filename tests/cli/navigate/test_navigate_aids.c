@@ -53,6 +53,9 @@ static void simulate_drive(void)
 #define SLOW                                                                                       \
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
     "slow.csv --aid-sigma 'velocity 0.1 m/s' --aid-lever-arm '1 -0.5 -1.5 m'"
+#define LATE                                                                                       \
+    "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
+    "late.csv --aid-lever-arm '1 -0.5 -1.5 m' "
 #define SWAPPED                                                                                    \
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model tactical --aid "  \
     "swapped.csv "
@@ -144,6 +147,27 @@ static void test_swapped(void **state)
                          "> slow.csv; " SLOW),
                      0);
     check_contains(err, "--aid-sigma \"velocity SIGMA correlated SIGMA over TIME\"", "velocity");
+    sweep();
+}
+
+/* Times half a second late, on a way with many turns: the readings that are refused say so, to a
+ * tenth, and with the delay that is advised none is refused. */
+static void test_late(void **state)
+{
+    (void)state;
+    put_drive();
+    assert_int_equal(run("sed -i '/hold 20 s/,$d' drive.yaml; echo '  - repeat: {times: 16, steps: "
+                         "[hold 20 s, turn right 90 deg at 15 deg/s]}' >> drive.yaml"),
+                     0);
+    simulate_drive();
+    assert_int_equal(
+        run("awk -F, -v OFS=, 'NR > 1 {$1 += 0.5} {print}' gnss.csv > late.csv; " LATE), 0);
+    check_contains(err, "the sigmas that are stated hold only if", "doubt");
+    CHECK_CLOSE(after(err, "those refused look about "), 0.5, 0.1);
+    CHECK_CLOSE(after(err, "late, as with --aid-delay="), 0.5, 0.1);
+    assert_int_equal(run(LATE "--aid-delay 0.5s --strict"), 0);
+    assert_int_equal(run(LATE "--aid-delay 1s"), 0);
+    CHECK_CLOSE(after(err, "early, as with --aid-delay="), 0.5, 0.1);
     sweep();
 }
 
@@ -257,7 +281,7 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_drive), cmocka_unit_test(test_swapped),
-                                       cmocka_unit_test(test_columns),
+                                       cmocka_unit_test(test_late), cmocka_unit_test(test_columns),
                                        cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
