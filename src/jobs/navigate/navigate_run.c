@@ -317,10 +317,10 @@ static bool is_lost(const imk_navigate_log *n, size_t row, double speed)
  * and is not any more was made negative by rounding. */
 static bool is_sigma_lost(const imk_navigate_log *n, size_t row)
 {
-    static const int horizontal[] = {0, 1, 3, 4};
-    for (size_t i = 0; i < 4 && row > 0 && n->aid_count > 0; i++) {
-        const double *sigma = n->track[IMK_TRACK_SIGMA + horizontal[i]];
-        if (sigma[row - 1] > 0.0 && !(sigma[row] > 0.0))
+    for (int i = 0; i < IMK_NAVIGATION_ERRORS && row > 0 && n->aid_count > 0; i++) {
+        const double *sigma = n->track[IMK_TRACK_SIGMA + i];
+        const bool held = n->settings.hold_height && (i == 2 || i == 5);
+        if (!held && sigma[row - 1] > 0.0 && !(sigma[row] > 0.0))
             return true;
     }
     return false;
