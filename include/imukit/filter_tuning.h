@@ -58,7 +58,8 @@ typedef struct imk_filter_tuning_settings {
     bool learned;
     bool compensated;   /**< as in imk_drift_settings, without correlations of the model */
     bool per_axis;      /**< numbers of each axis, not of a triad; default false */
-    double eigen_limit; /**< of the safe answer, > 0: largest eigenvalue of P_m^-1 P_t; 1.05 */
+    double eigen_limit; /**< of the safe answer, > 0: largest eigenvalue of P_m^-1 P_t; 1.05. Its N
+                           and K are not below those of the model, B not counted */
 } imk_filter_tuning_settings;
 
 /** 200 Hz, 0.01 s to 10 s, 64 windows, no motion yet. */

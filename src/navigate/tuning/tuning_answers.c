@@ -253,6 +253,17 @@ static void take_theta(const imki_tuning_problem *problem, const parameter *list
                 *number_of(p, list[k].kind, list[k].sensor, axis) = sqrt(theta[k]);
 }
 
+/* Variance of the white noise or the random walk that the sensor itself has, B not counted. */
+static double own_variance(const imk_model *model, const parameter *of)
+{
+    const imk_noise *noise = &imk_model_triad(model, of->sensor)->noise;
+    const double *value =
+        of->kind == IMKI_BASIS_WHITE ? noise->white.value : noise->random_walk.value;
+    if (of->axis >= 0)
+        return value[of->axis] * value[of->axis];
+    return (value[0] * value[0] + value[1] * value[1] + value[2] * value[2]) / 3.0;
+}
+
 /* Fit and safe of one kind of filter. */
 static bool solve(const imki_tuning_totals *totals, const imki_tuning_arrays *arrays,
                   const imk_filter_tuning_settings *settings, const imk_model *model, bool scaled,
@@ -280,6 +291,8 @@ static bool solve(const imki_tuning_totals *totals, const imki_tuning_arrays *ar
     fill_answer(totals, arrays, kind, &parameters, &tuning->answer[kind]);
     if (!(tuning->answer[kind].mean_nees > 1e-3)) /* no errors: the fit follows them to nothing */
         return false;
+    for (int k = 0; k < problem.parameters; k++)
+        problem.floor[k] = own_variance(model, &list[k]);
     if (!imki_tuning_safe(&problem, theta, safe))
         return false;
     take_theta(&problem, list, safe, &parameters);

@@ -14,9 +14,12 @@
  * sum theta_i gradient_i/theta_i = 0: without F, the mean of tr(W P_t) is 9.
  *
  * Safe: the least sum of c_i theta_i, c_i = sum tr(P_fit^-1 M_i), with P_m - P_t/limit >= 0 at each
- * time: a convex problem with one answer, by an interior path,
+ * time and no theta_i below its floor, the sensor's own noise: a convex problem with one answer, by
+ * an interior path,
  *
- *     c . theta - mu [sum ln det (P_m - P_t/limit) + sum ln theta_i],  mu -> 0 [BOYD2004]. */
+ *     c . theta - mu [sum ln det (P_m - P_t/limit) + sum ln (theta_i - floor_i)],  mu -> 0
+ *
+ * [BOYD2004]. */
 #include "tuning_internal.h"
 
 #include "imukit/elementary.h"
@@ -242,21 +245,33 @@ double imki_tuning_likelihood(const imki_tuning_problem *problem, const double *
 
 typedef struct path {
     const imki_tuning_problem *problem;
-    double cost[IMKI_PARAMETERS_MAX], unit[IMKI_PARAMETERS_MAX]; /* theta = unit u */
+    double cost[IMKI_PARAMETERS_MAX], unit[IMKI_PARAMETERS_MAX]; /* theta = floor + unit u */
     double mu;
 } path;
+
+static double theta_of(const path *p, const double *u, int i)
+{
+    return p->problem->floor[i] + u[i] * p->unit[i];
+}
+
+static double cost_of(const path *p, const double *u)
+{
+    double total = 0.0;
+    for (int i = 0; i < p->problem->parameters; i++)
+        total += p->cost[i] * theta_of(p, u, i);
+    return total;
+}
 
 /* The function of the path at u; false: outside. */
 static bool barrier(const path *p, const double *u, curve *c)
 {
     const imki_tuning_problem *problem = p->problem;
-    double theta[IMKI_PARAMETERS_MAX], linear = 0.0;
+    double theta[IMKI_PARAMETERS_MAX];
     memset(c, 0, sizeof *c);
     for (int i = 0; i < problem->parameters; i++) {
         if (!(u[i] > 0.0))
             return false;
-        theta[i] = u[i] * p->unit[i];
-        linear += p->cost[i] * theta[i];
+        theta[i] = theta_of(p, u, i);
     }
     for (size_t t = 0; t < problem->times; t++) {
         double s[9][9], w[9][9], log_determinant;
@@ -272,7 +287,7 @@ static bool barrier(const path *p, const double *u, curve *c)
         add_bases(problem, t, (const double(*)[9])w, (const double(*)[9])s, NULL, c);
     }
     to_logarithms(problem, p->unit, c);
-    c->value = linear + p->mu * c->value;
+    c->value = cost_of(p, u) + p->mu * c->value;
     for (int i = 0; i < problem->parameters; i++) {
         c->value -= p->mu * imk_ln(u[i]);
         c->gradient[i] = p->cost[i] * p->unit[i] + p->mu * (c->gradient[i] - 1.0 / u[i]);
@@ -316,7 +331,7 @@ static bool follow(const path *p, double *u)
 bool imki_tuning_safe(const imki_tuning_problem *problem, const double *fit, double *theta)
 {
     path p = {.problem = problem};
-    double u[IMKI_PARAMETERS_MAX], total = 0.0;
+    double u[IMKI_PARAMETERS_MAX];
     const int n = problem->parameters;
     for (int i = 0; i < n; i++) {
         p.unit[i] = fmax(fit[i], theta_at(problem, fit, i, 1e-3));
@@ -337,17 +352,14 @@ bool imki_tuning_safe(const imki_tuning_problem *problem, const double *fit, dou
         for (int i = 0; i < n; i++)
             u[i] *= 2.0;
     }
-    for (int i = 0; i < n; i++)
-        total += p.cost[i] * p.unit[i] * u[i];
+    double total = cost_of(&p, u);
     const double conditions = (double)(problem->times * STATES) + n;
     for (p.mu = total / conditions; p.mu * conditions > 1e-8 * total; p.mu *= 0.3) {
         if (!follow(&p, u))
             return false;
-        total = 0.0;
-        for (int i = 0; i < n; i++)
-            total += p.cost[i] * p.unit[i] * u[i];
+        total = cost_of(&p, u);
     }
     for (int i = 0; i < n; i++)
-        theta[i] = u[i] * p.unit[i];
+        theta[i] = theta_of(&p, u, i);
     return true;
 }

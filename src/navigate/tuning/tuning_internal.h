@@ -213,6 +213,7 @@ typedef struct imki_tuning_problem {
     double (*fixed)[9][9];
     double (*basis)[9][9]; /* [parameter * times + time] */
     double limit;
+    double floor[IMKI_PARAMETERS_MAX]; /* least variances of the safe answer */
 } imki_tuning_problem;
 
 /* P_m at a time. */

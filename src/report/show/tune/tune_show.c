@@ -133,9 +133,7 @@ static void add_number(const imk_tune_model *r, int kind, int column, imk_table 
     const imk_filter_answer *a = &r->tuning->answer[kind];
     const double value = number_of(a, column);
     const double stated = number_of(&r->tuning->answer[IMK_FILTER_STATED], column);
-    if (a->unused[column / 2][column % 2] && kind >= IMK_FILTER_FIT)
-        imk_table_add(table, "\t0\t-");
-    else if (stated > 0.0)
+    if (stated > 0.0)
         imk_table_add(table, "\t%.3g\tx%.3g", value, value / stated);
     else
         imk_table_add(table, "\t%.3g\t-", value);
