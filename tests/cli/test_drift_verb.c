@@ -565,6 +565,32 @@ static void test_aids(void **state)
     sweep();
 }
 
+/* --only asks what a term does in the filter of the whole model, so that what the filter believes
+ * is that of the whole model; the figure is less than that of all terms. */
+static void test_only_with_aids(void **state)
+{
+    (void)state;
+#define AIDED                                                                                      \
+    "$I drift tactical --rate 20Hz --aid \"position 1 m, velocity 0.05 m/s at 1 Hz until 40 s\" "  \
+    "--outage 10s --initial-attitude \"0.1 deg\" --json"
+    static const char *const line[] = {AIDED, AIDED " --only gyro.misalignment",
+                                       AIDED " --only gyro.misalignment --filter-model tactical",
+                                       AIDED " --without gyro.noise"};
+    double cep[4], believed[4];
+    for (size_t k = 0; k < 4; k++) {
+        json_t *one = case_of(result_of(line[k]), 0);
+        json_t *last = json_array_get(json_object_get(one, "times"), 1);
+        cep[k] = figure(one, 1, "cep");
+        believed[k] = value_of(json_object_get(json_object_get(last, "believed"), "cep"));
+        json_decref(document);
+    }
+    assert_true(believed[0] > 0.0 && cep[1] < cep[0] && cep[3] < cep[0]);
+    for (size_t k = 1; k < 4; k++)
+        CHECK_RELATIVE(believed[k], believed[0], 1e-12);
+    CHECK_RELATIVE(cep[1], cep[2], 1e-12);
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -582,6 +608,7 @@ int main(void)
         cmocka_unit_test(test_files),
         cmocka_unit_test(test_motion),
         cmocka_unit_test(test_aids),
+        cmocka_unit_test(test_only_with_aids),
         cmocka_unit_test(test_messages),
         cmocka_unit_test(test_omitted),
         cmocka_unit_test(test_unstated),
