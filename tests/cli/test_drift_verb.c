@@ -591,6 +591,23 @@ static void test_only_with_aids(void **state)
     sweep();
 }
 
+/* A filter made for a much better sensor believes itself better than it is, and this is said; of a
+ * filter that knows all errors nothing is said. */
+static void test_inconsistent(void **state)
+{
+    (void)state;
+#define RUNS                                                                                       \
+    " --rate 20Hz --aid \"position 1 m, velocity 0.05 m/s at 1 Hz until 40 s\" --outage 10s "      \
+    "--initial-attitude \"0.1 deg\" --monte-carlo 32"
+    assert_int_equal(run("$I drift tactical" RUNS " --filter-model navigation"), 0);
+    check_contains(err, "the filter believes itself better than it is (NEES ", err);
+    assert_int_equal(run("$I drift tactical" RUNS " --only bias.repeatability,"
+                         "gyro.angle_random_walk,accel.velocity_random_walk"),
+                     0);
+    assert_null(strstr(err, "believes itself"));
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -608,6 +625,7 @@ int main(void)
         cmocka_unit_test(test_files),
         cmocka_unit_test(test_motion),
         cmocka_unit_test(test_aids),
+        cmocka_unit_test(test_inconsistent),
         cmocka_unit_test(test_only_with_aids),
         cmocka_unit_test(test_messages),
         cmocka_unit_test(test_omitted),
