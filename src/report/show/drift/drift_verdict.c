@@ -152,9 +152,10 @@ static void warn_of_runs(const imk_drift_models *r, imk_verdict *v)
         return;
     warn(v, "disagreement",
          "from %s on the runs differ from the covariance by more than %g %% (%s): the runs are "
-         "right, and the linear theory leaves something out",
+         "right, and the linear theory leaves something out%s",
          imki_drift_moment(r, imki_drift_row_time(r, (size_t)row), text), 100 * tolerance,
-         imk_drift_requirement_name(requirement));
+         imk_drift_requirement_name(requirement),
+         r->nees_degrees > 0 ? ", such as readings of an aid that the filter refuses" : "");
 }
 
 imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result)
