@@ -260,6 +260,10 @@ static int show(const work *w)
         show_requirement(r, result);
     else if (w->count == 1 && !r->answer && !o->output)
         imk_result_line(result, "\nNext: keep the runs with -o RESULTS.h5");
+    if (o->aid.count && w->scene.settings.alignment == IMK_ALIGNED_GIVEN && !o->initial_position &&
+        !o->initial_velocity && !o->initial_attitude)
+        imk_result_line(result, "\nThe navigator starts without error; --initial-attitude "
+                                "\"0.5 0.5 5 deg\" (1 sigma) gives it one.");
     imk_result_for(result, IMK_FOR_PAGE);
     for (size_t m = 0; m < w->count; m++)
         show_model(result, w->name[m], w->model[m]);

@@ -605,6 +605,9 @@ static void test_inconsistent(void **state)
                          "gyro.angle_random_walk,accel.velocity_random_walk"),
                      0);
     assert_null(strstr(err, "believes itself"));
+    assert_null(strstr(out, "starts without error"));
+    assert_int_equal(run("$I drift tactical --rate 20Hz --aid \"position 1 m\" --times 5s"), 0);
+    check_contains(out, "starts without error; --initial-attitude", out);
     sweep();
 }
 
