@@ -553,7 +553,8 @@ static void test_aids(void **state)
         {"$I drift tactical --aid \"positon 1 m\"", "did you mean position?"},
         {"$I drift tactical --aid \"position 1 m at 1 Hz until 60 s\" --outage 60s --times 1s",
          "leave --times out"},
-        {"$I drift tactical --aid \"position 1 m at 200 Hz\" --duration 10s", "once a sample"},
+        {"$I drift tactical --aid \"position 1 m at 200 Hz\" --duration 10s",
+         "once a sample, and --rate is 100 Hz"},
         {"$I drift tactical --gains retuned", "--want"},
         {"$I drift tactical --filter-model navigation", "add --aid"},
     };
