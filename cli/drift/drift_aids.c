@@ -18,6 +18,11 @@ static int read_aids(const option_texts *texts, drift_scene *s)
             return code;
         if (settings->aid_count + count > IMK_AIDS_MAX)
             return command_misused("--aid: at most %d quantities in all", IMK_AIDS_MAX);
+        if (aid[0].interval * settings->rate < 1.0 - 1e-9)
+            return command_misused(
+                "--aid \"%s\": readings come at most once a sample, and --rate is "
+                "%g Hz; state a lower rate, or a higher --rate",
+                texts->text[t], settings->rate);
         for (size_t k = 0; k < count; k++)
             s->aid[settings->aid_count++] = aid[k];
     }

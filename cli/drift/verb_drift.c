@@ -79,7 +79,9 @@ static const option aid_option_table[] = {
      .help = "times after the end of the aids to show, such as \"60s, 300s\"; default 10s, 60s, "
              "300s"},
     {"filter-model", OPTION_FILE, AT(filter_model), .value = "MODEL",
-     .help = "the model that the navigator's filter is made for; default: that of the unit"},
+     .help = "the model that the navigator's filter is made for; default: that of the unit, with "
+             "all of "
+             "its terms, whatever --only and --without leave out"},
     {"gains", OPTION_CHOICE, AT(gains), .value = "HOW", .choices = "held|retuned",
      .help =
          "of --want: held (the default): the filter keeps its gains when terms improve; retuned: "
@@ -153,11 +155,25 @@ typedef struct work {
     const drift_options *o;
     size_t count;
     imk_model *model[IMK_DRIFT_MODELS_MAX];
+    imk_model *whole[IMK_DRIFT_MODELS_MAX]; /* before --only and --without; NULL without them */
     imk_unstated assumed[IMK_DRIFT_MODELS_MAX];
     const char *name[IMK_DRIFT_MODELS_MAX + 1];
     drift_scene scene;
     imk_drift_models *r;
 } work;
+
+/* What a term does alone is asked of a filter that knows of all of them. */
+static void keep_whole(work *w, size_t m)
+{
+    const drift_options *o = w->o;
+    if (!o->terms.only && !o->terms.without)
+        return;
+    w->whole[m] = command_memory(NULL, sizeof *w->whole[m]);
+    *w->whole[m] = *w->model[m];
+    if (o->assume_class)
+        imk_model_assume_class(w->whole[m], options_assumed_class(o->assume_class), NULL);
+    (void)imk_model_complete(w->whole[m]);
+}
 
 static int open_models(work *w)
 {
@@ -166,6 +182,8 @@ static int open_models(work *w)
         w->model[m] = command_memory(NULL, sizeof *w->model[m]);
         w->count = m + 1;
         code = command_model(w->name[m], w->model[m], NULL);
+        if (code < 0)
+            keep_whole(w, m);
         if (code < 0)
             code = term_selection_apply(&w->o->terms, w->model[m]);
         if (code < 0 && w->o->assume_class)
@@ -242,6 +260,10 @@ static int show(const work *w)
         show_requirement(r, result);
     else if (w->count == 1 && !r->answer && !o->output)
         imk_result_line(result, "\nNext: keep the runs with -o RESULTS.h5");
+    if (o->aid.count && w->scene.settings.alignment == IMK_ALIGNED_GIVEN && !o->initial_position &&
+        !o->initial_velocity && !o->initial_attitude)
+        imk_result_line(result, "\nThe navigator starts without error; --initial-attitude "
+                                "\"0.5 0.5 5 deg\" (1 sigma) gives it one.");
     imk_result_for(result, IMK_FOR_PAGE);
     for (size_t m = 0; m < w->count; m++)
         show_model(result, w->name[m], w->model[m]);
@@ -270,7 +292,7 @@ static int drift(work *w)
 {
     const drift_options *o = w->o;
     const drift_scene *scene = &w->scene;
-    const imk_model *models[IMK_DRIFT_MODELS_MAX];
+    const imk_model *models[IMK_DRIFT_MODELS_MAX], *whole[IMK_DRIFT_MODELS_MAX];
     imk_error error;
     imk_thread_pool *pool = imk_thread_pool_create(campaign_threads(o->threads.value));
     const imk_executor executor = imk_thread_pool_executor(pool);
@@ -282,8 +304,12 @@ static int drift(work *w)
     settings.assume = o->assume_class > 0;
     settings.assumed_class = options_assumed_class(o->assume_class);
     settings.want.retuned = o->gains == 1;
-    for (size_t m = 0; m < w->count; m++)
+    for (size_t m = 0; m < w->count; m++) {
         models[m] = w->model[m];
+        whole[m] = w->whole[m];
+    }
+    if (w->whole[0])
+        settings.filter_models = whole;
     const imk_status status = imk_drift_models_run(w->count, models, w->name, &scene->times,
                                                    &settings, &job, &w->r, &error);
     imk_thread_pool_destroy(pool);
@@ -332,8 +358,10 @@ static int run(int count, char **words)
         code = drift_scene_open(&o, &w.scene);
     if (code < 0)
         code = drift(&w);
-    for (size_t m = 0; m < w.count; m++)
+    for (size_t m = 0; m < w.count; m++) {
         free(w.model[m]);
+        free(w.whole[m]);
+    }
     drift_scene_free(&w.scene);
     return code < 0 ? EXIT_DONE : code;
 }

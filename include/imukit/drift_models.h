@@ -65,6 +65,10 @@ typedef struct imk_drift_models_settings {
     bool calibrated; /**< true: analyse each model with its known values taken out; a single model
                         also without; default false */
     imk_drift_wanted want;
+    /** Of an aided navigator, with no drift.filter_model: [model], the models that the filters are
+     *  made for, such as those of which terms were left out; NULL: the models themselves. They must
+     *  outlive the result. */
+    const imk_model *const *filter_models;
     /** true: devices of the catalogue are analysed with typical values for what their sources leave
      *  out (imk_model_assume_class() with `assumed_class`). It does not concern the models, for
      *  which the caller does the same; default false */

@@ -553,7 +553,8 @@ static void test_aids(void **state)
         {"$I drift tactical --aid \"positon 1 m\"", "did you mean position?"},
         {"$I drift tactical --aid \"position 1 m at 1 Hz until 60 s\" --outage 60s --times 1s",
          "leave --times out"},
-        {"$I drift tactical --aid \"position 1 m at 200 Hz\" --duration 10s", "once a sample"},
+        {"$I drift tactical --aid \"position 1 m at 200 Hz\" --duration 10s",
+         "once a sample, and --rate is 100 Hz"},
         {"$I drift tactical --gains retuned", "--want"},
         {"$I drift tactical --filter-model navigation", "add --aid"},
     };
@@ -562,6 +563,52 @@ static void test_aids(void **state)
         if (!strstr(err, wrong[k].message))
             fail_msg("%s: %s", wrong[k].line, err);
     }
+    sweep();
+}
+
+/* --only asks what a term does in the filter of the whole model, so that what the filter believes
+ * is that of the whole model; the figure is less than that of all terms. */
+static void test_only_with_aids(void **state)
+{
+    (void)state;
+#define AIDED                                                                                      \
+    "$I drift tactical --rate 20Hz --aid \"position 1 m, velocity 0.05 m/s at 1 Hz until 40 s\" "  \
+    "--outage 10s --initial-attitude \"0.1 deg\" --json"
+    static const char *const line[] = {AIDED, AIDED " --only gyro.misalignment",
+                                       AIDED " --only gyro.misalignment --filter-model tactical",
+                                       AIDED " --without gyro.noise"};
+    double cep[4], believed[4];
+    for (size_t k = 0; k < 4; k++) {
+        json_t *one = case_of(result_of(line[k]), 0);
+        json_t *last = json_array_get(json_object_get(one, "times"), 1);
+        cep[k] = figure(one, 1, "cep");
+        believed[k] = value_of(json_object_get(json_object_get(last, "believed"), "cep"));
+        json_decref(document);
+    }
+    assert_true(believed[0] > 0.0 && cep[1] < cep[0] && cep[3] < cep[0]);
+    for (size_t k = 1; k < 4; k++)
+        CHECK_RELATIVE(believed[k], believed[0], 1e-12);
+    CHECK_RELATIVE(cep[1], cep[2], 1e-12);
+    sweep();
+}
+
+/* A filter made for a much better sensor believes itself better than it is, and this is said; of a
+ * filter that knows all errors nothing is said. */
+static void test_inconsistent(void **state)
+{
+    (void)state;
+#define RUNS                                                                                       \
+    " --rate 20Hz --aid \"position 1 m, velocity 0.05 m/s at 1 Hz until 40 s\" --outage 10s "      \
+    "--initial-attitude \"0.1 deg\" --monte-carlo 32"
+    assert_int_equal(run("$I drift tactical" RUNS " --filter-model navigation"), 0);
+    check_contains(err, "the filter believes itself better than it is (NEES ", err);
+    assert_int_equal(run("$I drift tactical" RUNS " --only bias.repeatability,"
+                         "gyro.angle_random_walk,accel.velocity_random_walk"),
+                     0);
+    assert_null(strstr(err, "believes itself"));
+    assert_null(strstr(out, "starts without error"));
+    assert_int_equal(run("$I drift tactical --rate 20Hz --aid \"position 1 m\" --times 5s"), 0);
+    check_contains(out, "starts without error; --initial-attitude", out);
     sweep();
 }
 
@@ -582,6 +629,8 @@ int main(void)
         cmocka_unit_test(test_files),
         cmocka_unit_test(test_motion),
         cmocka_unit_test(test_aids),
+        cmocka_unit_test(test_inconsistent),
+        cmocka_unit_test(test_only_with_aids),
         cmocka_unit_test(test_messages),
         cmocka_unit_test(test_omitted),
         cmocka_unit_test(test_unstated),

@@ -110,11 +110,91 @@ static void test_retuned(void **state)
         check_want(IMK_REQUIRED_HEADING, 2e-3, true);
 }
 
+/* ---- what is not stated ---- */
+
+enum { MOMENTS = 2 };
+
+/* Mean square of a figure of a model in the filter of another. */
+static void squares(const imk_model *model, const imk_model *filter, imk_drift_settings s,
+                    imk_drift_requirement figure, double square[MOMENTS])
+{
+    static const int first[] = {[IMK_REQUIRED_DRMS] = 0,
+                                [IMK_REQUIRED_HEIGHT] = 2,
+                                [IMK_REQUIRED_VELOCITY] = 3,
+                                [IMK_REQUIRED_TILT] = 6,
+                                [IMK_REQUIRED_HEADING] = 8};
+    const int last = first[figure] + (first[figure] == 2 || first[figure] == 8 ? 0 : 1);
+    imk_drift_analysis *analysis;
+    imk_error error;
+    s.filter_model = filter;
+    const size_t size = imk_drift_covariance_size(model, &s);
+    void *memory = malloc(size);
+    assert_non_null(memory);
+    CHECK_OK(imk_drift_covariance(model, &s, NULL, &analysis, memory, size, &error));
+    for (size_t t = 0; t < MOMENTS; t++) {
+        const imk_drift_moments *m = &analysis->total[t];
+        square[t] = 0.0;
+        for (int i = first[figure]; i <= last; i++)
+            square[t] += m->covariance[i][i] + m->mean[i] * m->mean[i];
+    }
+    free(memory);
+}
+
+/* The share of a term that is not stated is what the mean square grows by when it is added, in the
+ * filter of the model as it is, as the mean of both signs: by brute force. */
+static void test_share_of_unstated(void **state)
+{
+    (void)state;
+    const double stated[MOMENTS] = {outage, wanted};
+    imk_model *model = malloc(3 * sizeof *model), *plus = &model[1], *minus = &model[2];
+    assert_non_null(model);
+    assert_non_null(imk_device_find("tactical"));
+    imk_device_model(imk_device_find("tactical"), model);
+    memset(&model->accel.misalignment, 0, sizeof model->accel.misalignment);
+    for (int i = 0; i < 3; i++) /* so that a misalignment is not lost in it */
+        model->accel.bias.repeatability.value[i] *= 0.25;
+    *plus = *model;
+    imk_model_assume_class(plus, IMK_GRADE_NONE, NULL);
+    *minus = *plus;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            minus->accel.misalignment.value[i][j] *= -1;
+    imk_aid aid[IMK_AIDS_MAX];
+    imk_drift_models_settings settings = imk_drift_models_default();
+    imk_drift_times times;
+    imk_drift_models *r;
+    imk_error error;
+    const char *const name = "tactical";
+    const imk_model *const one = model;
+    set_settings(aid, &settings.drift);
+    settings.drift.compensated = false;
+    for (int i = 6; i < 9; i++)
+        settings.drift.initial_sigma[i] = 1e-4;
+    CHECK_OK(
+        imk_drift_times_choose(0.0, MOMENTS, stated, 0.0, 10.0, false, 0.0, NULL, &times, &error));
+    CHECK_OK(imk_drift_models_run(1, &one, &name, &times, &settings, NULL, &r, &error));
+    assert_int_equal(r->cases[0].missing_count, 1);
+    const imk_drift_missing *missing = &r->cases[0].missing[0];
+    assert_string_equal(missing->term.key, "misalignment");
+    settings.drift.time = stated;
+    settings.drift.time_count = MOMENTS;
+    double of[3][MOMENTS], largest = 0.0;
+    for (int k = 0; k < 3; k++)
+        squares(&model[k], model, settings.drift, missing->figure, of[k]);
+    for (size_t t = 0; t < MOMENTS; t++)
+        largest = fmax(largest, 1.0 - of[0][t] / (0.5 * (of[1][t] + of[2][t])));
+    CHECK_RELATIVE(missing->share, largest, 1e-9);
+    imk_drift_models_free(r);
+    imk_drift_times_free(&times);
+    free(model);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_held),
         cmocka_unit_test(test_retuned),
+        cmocka_unit_test(test_share_of_unstated),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,14 +20,21 @@ static size_t source_of(const imk_drift_analysis *a, const imk_unstated_term *te
     return k;
 }
 
-/* Known values of several terms may cancel; then a share is more than all. */
+/* A typical value has no sign. With either sign, the mean of the total's square is that of the
+ * other terms and that of the part: their product, by which known values cancel or add, has mean 0.
+ */
 static double share_of(const imk_drift_moments *part, const imk_drift_moments *all,
                        imk_drift_requirement figure)
 {
-    const double shift = imki_drift_shift(part, figure), whole = imki_drift_shift(all, figure);
-    const double square = imki_drift_variance(part, figure) + shift * shift;
-    const double total = imki_drift_variance(all, figure) + whole * whole;
-    return total > square ? square / total : square > 0 ? 1 : 0;
+    imk_drift_moments others = *all;
+    for (int i = 0; i < IMK_DRIFT_STATES; i++)
+        others.mean[i] -= part->mean[i];
+    const double shift = imki_drift_shift(part, figure), rest = imki_drift_shift(&others, figure);
+    const double random = imki_drift_variance(part, figure);
+    const double square = random + shift * shift;
+    /* Less than 0 only if the part is correlated with others, which then cancel it. */
+    const double beside = fmax(0, imki_drift_variance(all, figure) - random) + rest * rest;
+    return square > 0 ? square / (square + beside) : 0;
 }
 
 static imk_drift_missing largest(const imk_drift_analysis *a, const imk_unstated_term *term,
@@ -63,6 +70,7 @@ imk_status imki_drift_missing(const imk_model *model, const imk_drift_settings *
 {
     imk_unstated unstated;
     imk_drift_analysis *analysis;
+    imk_drift_settings held = *settings;
     *count = 0;
     imk_model_unstated(model, &unstated);
     if (unstated.count == 0)
@@ -72,12 +80,16 @@ imk_status imki_drift_missing(const imk_model *model, const imk_drift_settings *
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     *whole = *model;
     imk_model_assume_class(whole, IMK_GRADE_NONE, &unstated);
-    const size_t size = imk_drift_covariance_size(whole, settings);
+    /* A share is of errors in the same filter: one that knew of the added terms would have other
+     * gains. */
+    if (held.aid_count > 0 && !held.filter_model)
+        held.filter_model = model;
+    const size_t size = imk_drift_covariance_size(whole, &held);
     void *memory = imki_arena_room(scratch, size);
     if (!memory)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     const imk_status status =
-        imk_drift_covariance(whole, settings, executor, &analysis, memory, size, error);
+        imk_drift_covariance(whole, &held, executor, &analysis, memory, size, error);
     for (size_t i = 0; status == IMK_OK && i < unstated.count; i++) {
         const imk_drift_missing found = largest(analysis, &unstated.term[i], figures);
         if (found.share > IMK_DRIFT_MATERIAL)

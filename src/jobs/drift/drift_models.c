@@ -165,6 +165,8 @@ static imk_status add_case(holder *h, size_t model, bool compensated, const char
     one->model = r->model[model];
     one->settings = r->settings.drift;
     one->settings.compensated = compensated;
+    if (!one->settings.filter_model && one->settings.aid_count > 0 && r->settings.filter_models)
+        one->settings.filter_model = r->settings.filter_models[model];
     snprintf(one->label, sizeof one->label, "%.90s%s", r->name[model], label);
     const imk_status status = analyse(r, one, &h->arena, job->executor, error);
     return status == IMK_OK

@@ -108,6 +108,35 @@ static int disagreement(const imk_drift_models *r, imk_drift_requirement *requir
     return -1;
 }
 
+/* The filter's own covariance against its errors, from the first time at which they differ. */
+static void warn_of_filter(const imk_drift_models *r, imk_verdict *v)
+{
+    char text[IMKI_DRIFT_TIME];
+    double low = 0, high = 0, degrees = r->nees_degrees;
+    const double part = (1 + tolerance) * (1 + tolerance); /* of a sigma, squared */
+    size_t k = 0, worst = 0;
+    for (; k < r->times->row_count; k++) {
+        imki_drift_nees_due(r, k, &low, &high);
+        if (r->nees[k] > part * degrees * pow(high / degrees, widening) ||
+            r->nees[k] < degrees * pow(low / degrees, widening) / part)
+            break;
+    }
+    if (k == r->times->row_count)
+        return;
+    for (size_t i = worst = k; i < r->times->row_count; i++)
+        if (fabs(log(r->nees[i] / degrees)) > fabs(log(r->nees[worst] / degrees)))
+            worst = i;
+    const bool better = r->nees[k] > degrees;
+    warn(v, "inconsistent",
+         "from %s on the filter believes itself %s than it is (NEES %.3g, due %.3g to %.3g; at "
+         "worst its sigmas are off by a factor of %.2g): %s",
+         imki_drift_moment(r, imki_drift_row_time(r, k), text), better ? "better" : "worse",
+         r->nees[k], low, high, exp(0.5 * fabs(log(r->nees[worst] / degrees))),
+         better ? "it does not know all errors that act on it; --compensated takes the known "
+                  "values out, --filter-model gives it more noise, imukit tune finds how much"
+                : "--filter-model gives it a model with less noise, imukit tune finds how much");
+}
+
 static void warn_of_runs(const imk_drift_models *r, imk_verdict *v)
 {
     imk_drift_requirement requirement;
@@ -123,9 +152,10 @@ static void warn_of_runs(const imk_drift_models *r, imk_verdict *v)
         return;
     warn(v, "disagreement",
          "from %s on the runs differ from the covariance by more than %g %% (%s): the runs are "
-         "right, and the linear theory leaves something out",
+         "right, and the linear theory leaves something out%s",
          imki_drift_moment(r, imki_drift_row_time(r, (size_t)row), text), 100 * tolerance,
-         imk_drift_requirement_name(requirement));
+         imk_drift_requirement_name(requirement),
+         r->nees_degrees > 0 ? ", such as readings of an aid that the filter refuses" : "");
 }
 
 imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result)
@@ -141,5 +171,7 @@ imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result)
     }
     if (r->found)
         warn_of_runs(r, &v);
+    if (r->found && r->nees_degrees > 0)
+        warn_of_filter(r, &v);
     return v;
 }
