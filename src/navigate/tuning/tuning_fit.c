@@ -331,7 +331,7 @@ static bool follow(const path *p, double *u)
 bool imki_tuning_safe(const imki_tuning_problem *problem, const double *fit, double *theta)
 {
     path p = {.problem = problem};
-    double u[IMKI_PARAMETERS_MAX];
+    double u[IMKI_PARAMETERS_MAX] = {0.0};
     const int n = problem->parameters;
     for (int i = 0; i < n; i++) {
         p.unit[i] = fmax(fit[i], theta_at(problem, fit, i, 1e-3));
