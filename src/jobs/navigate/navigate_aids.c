@@ -242,7 +242,7 @@ static void tell_unused(imk_navigate_log *n, const imk_navigate_aid *a, const im
     if (s->count == 0)
         return;
     const double first = s->reading[0].time, last = s->reading[s->count - 1].time;
-    const size_t used = a->counts.accepted + a->counts.refused;
+    const uint64_t used = a->counts.accepted + a->counts.refused;
     const double ratio =
         last > first ? fabs(log((end - begin) / (last - first)) / log(thousand)) : 0.0;
     const bool unit =
