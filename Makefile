@@ -11,6 +11,8 @@
 #   make faults  let memory, files and the disk fail, call by call, under every verb: some minutes
 #   make fuzz    feed the parsers with random input for a while
 #   make mpi     build/imukit-mpi too: campaigns on many machines (Open MPI)
+#   make python  the Python package: a wheel in build/dist, and its tests
+#   make install-python  install that wheel for this user's /usr/bin/python3
 #   make install [PREFIX=/usr/local] [DESTDIR=]
 #   make deps    only install the Debian packages that are missing
 #   make clean
@@ -28,7 +30,7 @@ quiet = >$(BUILD)/make.log 2>&1 || { cat $(BUILD)/make.log; exit 1; }
 configure = mkdir -p $(BUILD) && $(alone) cmake -S . -B $(BUILD) -D CMAKE_BUILD_TYPE=Release
 compile = $(alone) cmake --build $(BUILD) -j $(JOBS)
 
-.PHONY: all demo test check tidy-deep bench experiments experiments-all faults fuzz mpi install deps clean help
+.PHONY: all demo test check tidy-deep bench experiments experiments-all faults fuzz mpi python install-python install deps clean help
 
 all:
 	@tools/install_dependencies.sh build
@@ -83,6 +85,15 @@ mpi:
 	@tools/install_dependencies.sh build mpi
 	@$(configure) -D IMUKIT_MPI=ON $(quiet)
 	@$(compile) --target imukit-mpi
+
+python:
+	@tools/install_dependencies.sh build python
+	@$(configure) $(quiet)
+	@$(alone) BUILD=$(BUILD) tools/build_wheel.sh
+	@$(alone) BUILD=$(BUILD) tools/test_wheel.sh
+
+install-python: python
+	@/usr/bin/python3 -m pip install --user --force-reinstall --no-deps --break-system-packages $(BUILD)/dist/*.whl
 
 install: all
 	@cmake --install $(BUILD) --prefix $(PREFIX)
