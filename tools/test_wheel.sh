@@ -29,7 +29,7 @@ test_with() { # INTERPRETER
 number=0 seen=
 for interpreter in /usr/bin/python3 /usr/bin/python3.[0-9]* /usr/local/bin/python3.[0-9]* \
     "$HOME"/.pyenv/versions/*/bin/python3; do
-    case $interpreter in *config | *gdb.py) continue ;; esac
+    case $interpreter in *config | *gdb.py | *dbg) continue ;; esac
     [ -x "$interpreter" ] || continue
     "$interpreter" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || continue
     real=$(readlink -f "$interpreter")
