@@ -9,17 +9,10 @@ mypy --strict --cache-dir "$build/python-types" python/imukit
 BUILD=$build tools/build_wheel.sh >/dev/null
 BUILD=$build tools/test_wheel.sh
 
-extension() { # NAME INTERPRETER: the package with an extension of its own in $build/python-NAME
-    (cd python && IMUKIT_BUILD=$build "$2" -W ignore setup.py -q build_ext --build-lib "$build/python-$1" \
-        --build-temp "$build/python-$1-objects") >"$build/python-$1.log" 2>&1 ||
-        { cat "$build/python-$1.log"; exit 1; }
-    cp -r python/imukit/. "$build/python-$1/imukit/"
-}
-
-extension debug /usr/bin/python3-dbg
+BUILD=$build tools/build_package.sh "$build/python-debug" /usr/bin/python3-dbg
 (cd python/tests && PYTHONPATH=$build/python-debug /usr/bin/python3-dbg count_references.py 20)
 
-IMUKIT_SANITIZE=1 extension sanitized /usr/bin/python3
+IMUKIT_SANITIZE=1 BUILD=$build tools/build_package.sh "$build/python-sanitized" /usr/bin/python3
 # Leaks of the interpreter itself are not ours; the debug interpreter counts.
 (cd python/tests && ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$build/python-sanitized \
     LD_PRELOAD="$(cc -print-file-name=libasan.so) $(cc -print-file-name=libubsan.so)" \

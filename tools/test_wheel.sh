@@ -22,7 +22,7 @@ test_with() { # INTERPRETER
         fi
         (cd python/tests && PYTHONPATH=$path "$1" -W error::ResourceWarning -m unittest -q) \
             >"$place/log" 2>&1 || { cat "$place/log"; echo "failed: $1 $numpy NumPy"; exit 1; }
-        echo "$("$1" -V), $numpy NumPy: $(sed -n 's/^Ran \(.* tests\) .*/\1/p' "$place/log")"
+        echo "$1 ($("$1" -V)), $numpy NumPy: $(sed -n 's/^Ran \(.* tests\) .*/\1/p' "$place/log")"
     done
 }
 
