@@ -158,10 +158,10 @@ class Result:
             with open(f"{name}.part", "w", encoding="utf-8") as file:
                 file.write(text)
             os.replace(f"{name}.part", name)
-        except OSError:
+        except OSError as error:
             with contextlib.suppress(OSError):
                 os.unlink(f"{name}.part")
-            raise
+            raise OSError(error.errno, error.strerror, name) from None
 
     def page(self) -> str:
         """A page (HTML) with all tables and figures. Not of an unpickled result."""
