@@ -31,12 +31,14 @@ static int open_motion(const drift_options *o, drift_scene *s)
         return command_error(&error, o->motion);
     const imk_motion *motion = imk_motion_file_motion(s->motion);
     if (!motion->trajectory)
-        return command_failed(
+        return command_failed_by(
+            "no_position", NULL, o->motion,
             "%s: recorded rates and forces do not contain the true position of the unit; give a "
             "motion script or a table of poses (position and attitude)",
             o->motion);
     if (!motion->trajectory->earth)
-        return command_failed(
+        return command_failed_by(
+            "no_earth", NULL, o->motion,
             "%s: the motion is not on the Earth (`earth: no`), and navigation needs the Earth",
             o->motion);
     const char *note = imk_motion_file_note(s->motion);

@@ -148,7 +148,7 @@ static int write_parameters(const tune_work *w, const imk_model *made)
         if (notes->note[i].lost)
             command_warn("lost", "%s", notes->note[i].text);
         else
-            command_note("note: %s", notes->note[i].text);
+            command_note("assumed", "note: %s", notes->note[i].text);
     free(notes);
     return status == IMK_OK ? -1 : command_error(&error, NULL);
 }
