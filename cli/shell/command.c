@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Messages of the command: everything a person reads on standard error comes through here. */
+/* Messages of the command: everything a person reads beside results comes through here. */
 #define _POSIX_C_SOURCE 200809L
 #include "command.h"
+#include "voice.h"
 
 #include "imukit/names.h"
 #include "imukit/output_file.h"
@@ -71,9 +72,13 @@ const char *command_line_as(const char *name, const char *const *without, size_t
     return line;
 }
 
+static bool has_said_why; /* a message was an error's */
+
 void command_begin(const char *verb_name)
 {
     current_verb = verb_name;
+    warning_count = 0;
+    has_said_why = false;
 }
 
 const char *command_color(FILE *stream, const char *sequence)
@@ -100,30 +105,23 @@ void command_clean(char *text)
     *end = '\0';
 }
 
-static void speak(const char *color, const char *label, const char *format, va_list arguments)
+static void speak(voice_kind kind, const char *code, const char *format, va_list arguments)
     __attribute__((format(printf, 3, 0)));
 
-static void speak(const char *color, const char *label, const char *format, va_list arguments)
+static void speak(voice_kind kind, const char *code, const char *format, va_list arguments)
 {
     char text[MESSAGE_SIZE];
     vsnprintf(text, sizeof text, format, arguments);
     command_clean(text);
-    fflush(stdout);
-    fprintf(stderr, "imukit%s%s: ", current_verb ? " " : "", current_verb ? current_verb : "");
-    if (*label)
-        fprintf(stderr, "%s%s%s ", command_color(stderr, color), label,
-                command_color(stderr, COLOR_RESET));
-    fprintf(stderr, "%s\n", text);
+    voice_say(kind, current_verb, code, text);
 }
-
-static bool has_said_why; /* a message was an error's */
 
 int command_failed(const char *format, ...)
 {
     va_list arguments;
     has_said_why = true;
     va_start(arguments, format);
-    speak(COLOR_RED, "error:", format, arguments);
+    speak(VOICE_FAILURE, "failed", format, arguments);
     va_end(arguments);
     return EXIT_FAILED;
 }
@@ -133,12 +131,10 @@ int command_misused(const char *format, ...)
     va_list arguments;
     has_said_why = true;
     va_start(arguments, format);
-    speak(COLOR_RED, "error:", format, arguments);
+    speak(VOICE_FAILURE, "usage", format, arguments);
     va_end(arguments);
-    if (current_verb)
-        fprintf(stderr, "Try: imukit %s --help\n", current_verb);
-    else
-        fputs("Try: imukit --help\n", stderr);
+    voice_advise("Try: imukit%s%s --help", current_verb ? " " : "",
+                 current_verb ? current_verb : "");
     return EXIT_USAGE;
 }
 
@@ -152,7 +148,7 @@ int command_error(const imk_error *error, const char *source)
 void command_end(int code)
 {
     imk_output_file_abandon_all();
-    exit(code);
+    voice_end(code);
 }
 
 imk_status command_unless_memory(imk_status status)
@@ -229,7 +225,7 @@ int command_log_error(const imk_error *error, const char *path)
     const char *reason = strstr(options, " (");
     snprintf(added, sizeof added, "%.*s", (int)(reason ? reason - options : (long)strlen(options)),
              options);
-    fprintf(stderr, "Next: %s %s\n", command_line_but(added, sizeof line, line), added);
+    voice_advise("Next: %s %s", command_line_but(added, sizeof line, line), added);
     return code;
 }
 
@@ -280,7 +276,7 @@ void command_note(const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    speak("", "", format, arguments);
+    speak(VOICE_NOTE, "", format, arguments);
     va_end(arguments);
 }
 
@@ -306,7 +302,7 @@ void command_warn(const char *code, const char *format, ...)
     if (warning_count < WARNINGS_MAX)
         warnings[warning_count++] = warning;
     va_start(arguments, format);
-    speak(COLOR_YELLOW, "warning:", format, arguments);
+    speak(VOICE_WARNING, code, format, arguments);
     va_end(arguments);
 }
 
