@@ -90,7 +90,7 @@ static void print(const imk_result *result, bool json, FILE *out)
     if (out == stdout)
         voice_result(text, size);
     else
-        (void)fwrite(text, 1, size, out);
+        voice_aside(text, size);
     free(text);
 }
 

@@ -41,6 +41,11 @@ void voice_result(const char *text, size_t size)
         (void)command_failed("standard output: %s", strerror(errno));
 }
 
+void voice_aside(const char *text, size_t size)
+{
+    (void)fwrite(text, 1, size, stderr);
+}
+
 void voice_model(const imk_model *model)
 {
     (void)model;

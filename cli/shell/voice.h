@@ -19,6 +19,8 @@ void voice_say(voice_kind kind, const char *verb, const char *code, const char *
 void voice_advise(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* A result, as JSON or text. */
 void voice_result(const char *text, size_t size);
+/* A text beside the result, of several lines. */
+void voice_aside(const char *text, size_t size);
 /* A model that a verb has made, which --output writes. */
 void voice_model(const imk_model *model);
 /* Has the person asked to stop? The command is then ended by a signal, so here the answer is no. */
