@@ -2,6 +2,7 @@
 /* What came out, or why nothing did: messages, the model file, what is shown. */
 #include "calibrate_parts.h"
 #include "shell/model_changes.h"
+#include "shell/voice.h"
 
 #include <stdlib.h>
 
@@ -106,6 +107,8 @@ int session_show(session *b)
         imk_result_free(result);
         return code;
     }
+    if (writes)
+        voice_model(model);
     imk_show_calibrate_log(b->found, &verdict, o->poses, result);
     imk_result_for(result, IMK_FOR_PAGE);
     show_model(result, "Model file", &b->found->model);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Messages of the command: everything a person reads on standard error comes through here. */
+/* Messages of the command: everything a person reads beside results comes through here. */
 #define _POSIX_C_SOURCE 200809L
 #include "command.h"
 #include "told.h"
+#include "voice.h"
 
 #include "imukit/names.h"
 #include "imukit/output_file.h"
@@ -70,9 +71,13 @@ const char *command_line_as(const char *name, const char *const *without, size_t
     return line;
 }
 
+static bool has_said_why; /* a message was an error's */
+
 void command_begin(const char *verb_name)
 {
     current_verb = verb_name;
+    has_said_why = false;
+    told_begin();
 }
 
 const char *command_verb(void)
@@ -104,18 +109,6 @@ void command_clean(char *text)
     *end = '\0';
 }
 
-static void speak(const char *color, const char *label, const char *text)
-{
-    fflush(stdout);
-    fprintf(stderr, "imukit%s%s: ", current_verb ? " " : "", current_verb ? current_verb : "");
-    if (*label)
-        fprintf(stderr, "%s%s%s ", command_color(stderr, color), label,
-                command_color(stderr, COLOR_RESET));
-    fprintf(stderr, "%s\n", text);
-}
-
-static bool has_said_why; /* a message was an error's */
-
 static void fail(const char *code, const imk_error *error, const char *file, const char *format,
                  va_list arguments) __attribute__((format(printf, 4, 0)));
 
@@ -126,7 +119,7 @@ static void fail(const char *code, const imk_error *error, const char *file, con
     vsnprintf(text, sizeof text, format, arguments);
     command_clean(text);
     has_said_why = true;
-    speak(COLOR_RED, "error:", text);
+    voice_say(VOICE_FAILURE, current_verb, code ? code : "failed", text);
     told_error(code, error, file, text);
 }
 
@@ -155,10 +148,8 @@ int command_misused(const char *format, ...)
     va_start(arguments, format);
     fail("usage", NULL, NULL, format, arguments);
     va_end(arguments);
-    if (current_verb)
-        fprintf(stderr, "Try: imukit %s --help\n", current_verb);
-    else
-        fputs("Try: imukit --help\n", stderr);
+    voice_advise("Try: imukit%s%s --help", current_verb ? " " : "",
+                 current_verb ? current_verb : "");
     return EXIT_USAGE;
 }
 
@@ -173,7 +164,7 @@ void command_end(int code)
 {
     imk_output_file_abandon_all();
     told_end(code);
-    exit(code);
+    voice_end(code);
 }
 
 imk_status command_unless_memory(imk_status status)
@@ -252,7 +243,7 @@ int command_log_error(const imk_error *error, const char *path)
              options);
     char next[sizeof line + sizeof added];
     snprintf(next, sizeof next, "%s %s", command_line_but(added, sizeof line, line), added);
-    fprintf(stderr, "Next: %s\n", next);
+    voice_advise("Next: %s", next);
     told_next(next);
     return code;
 }
@@ -313,10 +304,7 @@ static void tell(imk_finding_level level, const char *code, const char *format, 
     command_clean(text);
     if (!told_finding(level, code, text))
         return;
-    if (level == IMK_FINDING_WARNING)
-        speak(COLOR_YELLOW, "warning:", text);
-    else
-        speak("", "", text);
+    voice_say(level == IMK_FINDING_WARNING ? VOICE_WARNING : VOICE_NOTE, current_verb, code, text);
 }
 
 void command_note(const char *code, const char *format, ...)

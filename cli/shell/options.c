@@ -353,6 +353,7 @@ int options_parse(const verb *v, int argument_count, char **arguments, void *set
 {
     size_t operand_count = 0;
     bool options_over = false;
+    stdout_taken_by = NULL;
     for (size_t i = 0; i < v->operands_maximum; i++)
         operands[i] = NULL;
     for (int i = 0; i < argument_count; i++) {

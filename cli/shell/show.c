@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Results become JSON, text, a page and a drawing. */
 #include "show.h"
+#include "voice.h"
 
 #include "imukit/figure_file.h"
 #include "imukit/model_file.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -75,8 +75,10 @@ static void print(const imk_result *result, bool json, FILE *out)
         status = imk_result_to_text(result, command_color(out, COLOR_BOLD),
                                     command_color(out, COLOR_RESET), &text, &size);
     (void)command_unless_memory(status);
-    if (fwrite(text, 1, size, out) != size && out == stdout)
-        (void)command_failed("standard output: %s", strerror(errno));
+    if (out == stdout)
+        voice_result(text, size);
+    else
+        voice_aside(text, size);
     free(text);
 }
 

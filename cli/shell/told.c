@@ -25,6 +25,19 @@ void told_wants_json(void)
     json_wanted = true;
 }
 
+void told_begin(void)
+{
+    for (size_t i = 0; i < finding_count; i++) {
+        free(findings[i].code);
+        free(findings[i].message);
+    }
+    free(findings);
+    findings = NULL;
+    finding_count = 0;
+    memset(&failure, 0, sizeof failure);
+    json_printed = false;
+}
+
 static char *copy_of(const char *text)
 {
     const size_t size = strlen(text) + 1;

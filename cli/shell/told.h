@@ -13,6 +13,9 @@
 /* The command line has --json: an error is printed as JSON, too. */
 void told_wants_json(void);
 
+/* Forget what an earlier verb of this process has told. */
+void told_begin(void);
+
 /* A note or a warning. */
 typedef struct told {
     imk_finding_level level;
