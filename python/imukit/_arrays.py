@@ -18,12 +18,18 @@ Array = Any
 def of_numbers(numbers: Iterable[float | None]) -> Array:
     """A vector of numbers; None becomes NaN."""
     made = array.array("d", (math.nan if x is None else x for x in numbers))
-    return numpy.frombuffer(made) if numpy is not None and made else _view(made)
+    return _view(made)
 
 
 def of_buffer(buffer: Any) -> Array:
     """The numbers of an object with the buffer protocol, not copied."""
     return numpy.asarray(buffer) if numpy is not None else memoryview(buffer)
+
+
+def of_array(values: Any) -> Any:
+    """An array of NumPy of what can become one, such as a column of a table."""
+    import numpy as found
+    return found.asarray(values)
 
 
 def empty(rows: int) -> Array:

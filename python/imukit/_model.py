@@ -43,7 +43,9 @@ class Model:
         return self.yaml().rstrip("\n")
 
     def __eq__(self, other: object) -> bool:
-        return self.yaml() == other.yaml() if isinstance(other, Model) else NotImplemented
+        if not isinstance(other, Model):
+            return NotImplemented
+        return self.yaml() == other.yaml()
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Model.parse, (self.yaml(),)
