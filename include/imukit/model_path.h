@@ -14,9 +14,11 @@ enum { IMK_MODEL_PATH = 96, IMK_MODEL_NUMBERS = 6 * IMK_AXES_MAX };
 
 /** The numbers at a path: number k of axis i is at [i * columns + k]. */
 typedef struct imk_model_numbers {
-    const char *unit; /**< of the numbers: "rad/sqrt(s)"; SI but for "count/uT" */
-    int axes;         /**< 1 … IMK_AXES_MAX; 0: what the path names is not of an axis */
-    int columns;      /**< numbers of each axis, or of the whole; 1 … 6 */
+    /** Of the numbers: "rad/sqrt(s)"; SI but for "count/uT". "" for pure numbers that the file has
+     *  without a unit, such as damping. */
+    const char *unit;
+    int axes;    /**< 1 … IMK_AXES_MAX; 0: what the path names is not of an axis */
+    int columns; /**< numbers of each axis, or of the whole; 1 … 6 */
     double value[IMK_MODEL_NUMBERS];
     double sigma[IMK_MODEL_NUMBERS]; /**< 1 sigma; 0: not stated */
 } imk_model_numbers;
@@ -32,12 +34,15 @@ typedef struct imk_model_numbers {
 IMK_API imk_status imk_model_numbers_get(const imk_model *model, const char *path,
                                          imk_model_numbers *numbers, imk_error *error);
 
+/** SI unit of the numbers at a path, as in imk_model_numbers, whether or not a model has them;
+ * NULL: no numbers have this path. */
+IMK_API const char *imk_model_path_unit(const char *path);
+
 /** Path number `index` of all those that have numbers, in the order of the model file, with "[]"
  *  for the elements of a list; evidence is left out.
  *  @param path  receives the path
- *  @return unit of the numbers, as in imk_model_numbers; of "coefficients[]" that of the first;
- *          NULL beyond the last path */
-IMK_API const char *imk_model_path(size_t index, char path[IMK_MODEL_PATH]);
+ *  @return false beyond the last path */
+IMK_API bool imk_model_path(size_t index, char path[IMK_MODEL_PATH]);
 
 IMK_END_C
 #endif

@@ -47,40 +47,25 @@ static size_t count_paths(const imki_field *field, int kind)
                                              : 1;
 }
 
-static const char *polynomial_unit(const place *p)
+/* Path number `index` of a row. */
+static void write_path(const imki_field *field, int kind, size_t index, char path[IMK_MODEL_PATH])
 {
-    return p->key == COEFFICIENTS ? imki_polynomial_si(p->field, p->kind, p->element + 1) : "K";
-}
-
-static const char *unit_of(const place *p)
-{
-    const int kind = p->kind < IMK_KINDS ? p->kind : 0;
-    return p->field->shape == IMKI_POLYNOMIAL ? polynomial_unit(p) : p->field->si[kind];
-}
-
-/* Path number `index` of a row. @return its unit */
-static const char *write_path(const imki_field *field, int kind, size_t index,
-                              char path[IMK_MODEL_PATH])
-{
-    place p = {.kind = kind, .field = field, .key = (int)index};
     path[0] = '\0';
     append(path, kind < IMK_KINDS ? imki_kind_names[kind] : "timing");
     append(path, ".");
     append(path, field->path[kind < IMK_KINDS ? kind : 0]);
     if (field->shape == IMKI_LIST) {
-        p.field = &imki_list_of(field).field[index];
         append(path, "[].");
-        append(path, p.field->path[kind]);
+        append(path, imki_list_of(field).field[index].path[kind]);
     } else if (field->shape == IMKI_POLYNOMIAL) {
         append(path, ".");
         append(path, polynomial_keys[index]);
         if (index == COEFFICIENTS)
             append(path, "[]");
     }
-    return unit_of(&p);
 }
 
-const char *imk_model_path(size_t index, char path[IMK_MODEL_PATH])
+bool imk_model_path(size_t index, char path[IMK_MODEL_PATH])
 {
     for (int kind = 0; kind <= IMK_KINDS; kind++) {
         const bool timing = kind == IMK_KINDS;
@@ -88,12 +73,14 @@ const char *imk_model_path(size_t index, char path[IMK_MODEL_PATH])
         const size_t count = timing ? imki_timing_field_count : imki_triad_field_count;
         for (size_t i = 0; i < count; i++) {
             const size_t paths = count_paths(&rows[i], kind);
-            if (index < paths)
-                return write_path(&rows[i], kind, index, path);
+            if (index < paths) {
+                write_path(&rows[i], kind, index, path);
+                return true;
+            }
             index -= paths;
         }
     }
-    return NULL;
+    return false;
 }
 
 /* ---- finding a path -------------------------------------------------------------------------- */
@@ -149,7 +136,8 @@ static bool find_below(const char *below, int kind, place *p)
         return false;
     const bool polynomial = p->field->shape == IMKI_POLYNOMIAL;
     const bool counted = p->list || (polynomial && p->key == COEFFICIENTS);
-    return polynomial == (p->key >= 0) && counted == (p->element >= 0);
+    const int most = polynomial ? IMK_TEMPERATURE_ORDER_MAX : IMK_TERMS_MAX;
+    return polynomial == (p->key >= 0) && counted == (p->element >= 0) && p->element < most;
 }
 
 /* The sensor of a path, and what follows it; NULL: it begins with none. */
@@ -161,6 +149,53 @@ static const char *below_sensor(const char *path, int *kind)
             return path + length + 1;
     }
     return NULL;
+}
+
+static const char *polynomial_unit(const place *p)
+{
+    return p->key == COEFFICIENTS ? imki_polynomial_si(p->field, p->kind, p->element + 1) : "K";
+}
+
+static const char *unit_of(const place *p)
+{
+    const int kind = p->kind < IMK_KINDS ? p->kind : 0;
+    return p->field->shape == IMKI_POLYNOMIAL ? polynomial_unit(p)
+           : p->field->flags & IMKI_BARE      ? ""
+                                              : p->field->si[kind];
+}
+
+/* What stands behind `begin` in a path; NULL: it begins otherwise. */
+static const char *behind(const char *path, const char *begin)
+{
+    const size_t length = strlen(begin);
+    return strncmp(path, begin, length) == 0 ? path + length : NULL;
+}
+
+/* @return false where no numbers have this path */
+static bool find(const char *path, place *p)
+{
+    int kind;
+    const char *below = below_sensor(path, &kind), *timing = behind(path, "timing.");
+    return below ? find_below(below, kind, p) : timing && find_timing(timing, p);
+}
+
+/* The key of an interval or bound of the evidence of a sensor; NULL: the path is of no such thing.
+ */
+static const char *evidence_key(const char *path, int *kind, bool *bound)
+{
+    const char *below = below_sensor(path, kind);
+    const char *interval = below ? behind(below, "evidence.interval_95.") : NULL;
+    *bound = !interval;
+    return interval || !below ? interval : behind(below, "evidence.upper_bound.");
+}
+
+const char *imk_model_path_unit(const char *path)
+{
+    place p;
+    int kind;
+    bool bound;
+    const char *key = evidence_key(path, &kind, &bound);
+    return (key ? find_below(key, kind, &p) : find(path, &p)) ? unit_of(&p) : NULL;
 }
 
 static imk_status refuse_unknown(const char *path, imk_error *error)
@@ -189,7 +224,7 @@ static imk_status refuse_missing(const char *path, const char *expected, imk_err
 /* In the unit that is told: of "count/uT" a number of the struct is not in it. */
 static void copy(imk_model_numbers *numbers, const double *value, const double *sigma)
 {
-    const double scale = imk_unit_of(numbers->unit).scale;
+    const double scale = numbers->unit[0] ? imk_unit_of(numbers->unit).scale : 1;
     const int axes = numbers->axes > 0 ? numbers->axes : 1;
     for (int k = 0; k < axes * numbers->columns; k++) {
         numbers->value[k] = value[k] / scale;
@@ -238,27 +273,16 @@ static int elements(const place *p, const imk_triad *triad)
         ->order;
 }
 
-/* What stands behind `begin` in a path; NULL: it begins otherwise. */
-static const char *behind(const char *path, const char *begin)
-{
-    const size_t length = strlen(begin);
-    return strncmp(path, begin, length) == 0 ? path + length : NULL;
-}
-
 /* An interval of the evidence, or the upper bound of a term that is absent. */
-static imk_status get_evidence(const imk_model *model, int kind, const char *path,
-                               imk_model_numbers *numbers, imk_error *error)
+static imk_status get_evidence(const imk_model *model, int kind, const char *path, const char *key,
+                               bool bound, imk_model_numbers *numbers, imk_error *error)
 {
     const imk_evidence *const evidence[IMK_KINDS] = {&model->gyro_evidence, &model->accel_evidence,
                                                      &model->mag_evidence};
     const imk_triad *triad = imk_model_triad(model, kind);
-    const char *below = strchr(path, '.') + 1, *key = behind(below, "evidence.interval_95.");
-    const bool bound = !key;
     char name[IMK_MODEL_PATH] = "";
     place p;
-    if (!key)
-        key = behind(below, "evidence.upper_bound.");
-    if (!key || !find_below(key, kind, &p))
+    if (!find_below(key, kind, &p))
         return refuse_unknown(path, error);
     append(name, key);
     const int instance = take_element(name);
@@ -285,12 +309,13 @@ imk_status imk_model_numbers_get(const imk_model *model, const char *path,
 {
     place p;
     int kind;
-    const char *below = below_sensor(path, &kind), *timing = behind(path, "timing.");
-    if (below && behind(below, "evidence."))
-        return get_evidence(model, kind, path, numbers, error);
-    if (!(below ? find_below(below, kind, &p) : timing && find_timing(timing, &p)))
+    bool bound;
+    const char *key = evidence_key(path, &kind, &bound);
+    if (key)
+        return get_evidence(model, kind, path, key, bound, numbers, error);
+    if (!find(path, &p))
         return refuse_unknown(path, error);
-    const imk_triad *triad = below ? imk_model_triad(model, kind) : NULL;
+    const imk_triad *triad = p.kind < IMK_KINDS ? imk_model_triad(model, p.kind) : NULL;
     if (triad && !triad->present)
         return refuse_missing(path, "a sensor that the model has", error);
     if (triad && p.element >= elements(&p, triad))

@@ -86,6 +86,20 @@ static void test_evidence(void **state)
     assert_true(n.value[4] == 1e-6 && n.value[5] == 2e-6);
 }
 
+static void test_units(void **state)
+{
+    (void)state;
+    assert_string_equal(imk_model_path_unit("gyro.noise.gauss_markov[7].sigma"), "rad/s");
+    assert_string_equal(imk_model_path_unit("accel.bias.temperature.coefficients[1]"), "m/s^2/K^2");
+    assert_string_equal(imk_model_path_unit("accel.bias.temperature.reference_temperature"), "K");
+    assert_string_equal(imk_model_path_unit("accel.evidence.upper_bound.bias.fixed"), "m/s^2");
+    assert_string_equal(imk_model_path_unit("gyro.damping"), "");
+    assert_string_equal(imk_model_path_unit("gyro.scale_factor.fixed"), "1");
+    assert_null(imk_model_path_unit("accel.bias"));
+    assert_null(imk_model_path_unit("accel.bias.temperature.coefficients[5]"));
+    assert_null(imk_model_path_unit(""));
+}
+
 /* Each path that is listed has numbers, or belongs to a list that is empty. */
 static void test_all_paths(void **state)
 {
@@ -159,6 +173,7 @@ int main(void)
         cmocka_unit_test_setup(test_lists, set_up),
         cmocka_unit_test_setup(test_other_units, set_up),
         cmocka_unit_test_setup(test_evidence, set_up),
+        cmocka_unit_test(test_units),
         cmocka_unit_test_setup(test_all_paths, set_up),
         cmocka_unit_test_setup(test_refused, set_up),
     };
