@@ -9,9 +9,9 @@ from ._core import Error, FileError, convert_unit, normal_gravity
 from ._core import version as __version__
 from ._identify import IdentifyResult, identify
 from ._log import Log, read_log
-from ._model import Model
+from ._model import Device, Model, devices
 from ._results import DataWarning, Fields, Finding, Result
 
 __all__ = ["AllanCurve", "AllanResult", "DataWarning", "Error", "Fields", "FileError", "Finding",
-           "IdentifyResult", "Log", "Model", "Result", "allan", "convert_unit", "identify",
+           "IdentifyResult", "Log", "Device", "Model", "Result", "devices", "allan", "convert_unit", "identify",
            "normal_gravity", "read_log"]
