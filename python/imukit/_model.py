@@ -375,7 +375,7 @@ def devices(name: str = "") -> tuple[Device, ...]:
 
     name  only entries with this in their name
 
-    Source: include/imukit/model.h.
+    Raises nothing. Source: include/imukit/model.h.
 
     >>> import imukit
     >>> [device.name for device in imukit.devices("ADIS1648")]
