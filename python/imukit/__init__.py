@@ -9,9 +9,28 @@ from ._core import Error, FileError, convert_unit, normal_gravity
 from ._core import version as __version__
 from ._identify import IdentifyResult, identify
 from ._log import Log, read_log
-from ._model import Model
+from ._model import Device, Model, devices
+from ._sensor import Sensor
 from ._results import DataWarning, Fields, Finding, Result
 
-__all__ = ["AllanCurve", "AllanResult", "DataWarning", "Error", "Fields", "FileError", "Finding",
-           "IdentifyResult", "Log", "Model", "Result", "allan", "convert_unit", "identify",
-           "normal_gravity", "read_log"]
+__all__ = [
+    "AllanCurve",
+    "AllanResult",
+    "DataWarning",
+    "Device",
+    "Error",
+    "Fields",
+    "FileError",
+    "Finding",
+    "IdentifyResult",
+    "Log",
+    "Model",
+    "Result",
+    "Sensor",
+    "allan",
+    "convert_unit",
+    "devices",
+    "identify",
+    "normal_gravity",
+    "read_log",
+]
