@@ -7,11 +7,16 @@ may stand for it: "0.1 deg/s".
 from ._allan import AllanCurve, AllanResult, allan
 from ._core import Error, FileError, convert_unit, normal_gravity
 from ._core import version as __version__
+from ._estimates import Estimate
 from ._identify import IdentifyResult, identify
+from ._info import InfoResult, info
 from ._log import Log, read_log
 from ._model import Model
 from ._results import DataWarning, Fields, Finding, Result
+from ._spectrum import SpectrumCurve, SpectrumLine, SpectrumResult, spectrum
 
-__all__ = ["AllanCurve", "AllanResult", "DataWarning", "Error", "Fields", "FileError", "Finding",
-           "IdentifyResult", "Log", "Model", "Result", "allan", "convert_unit", "identify",
-           "normal_gravity", "read_log"]
+__all__ = [
+    "AllanCurve", "AllanResult", "DataWarning", "Error", "Estimate", "Fields", "FileError",
+    "Finding", "IdentifyResult", "InfoResult", "Log", "Model", "Result", "SpectrumCurve",
+    "SpectrumLine", "SpectrumResult", "allan", "convert_unit", "identify", "info", "normal_gravity",
+    "read_log", "spectrum"]
