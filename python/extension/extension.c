@@ -3,8 +3,8 @@
 #include "extension.h"
 
 static PyMethodDef *const functions[] = {
-    allan_functions,  identify_functions, model_functions,
-    record_functions, sensor_functions,   unit_functions,
+    allan_functions,  identify_functions, info_functions,     model_functions,
+    record_functions, sensor_functions,   spectrum_functions, unit_functions,
 };
 
 static struct PyModuleDef definition = {

@@ -48,3 +48,8 @@ def matrix(vector: Array, rows: int, columns: int) -> Array:
 
 def _view(made: array.array[float]) -> Array:
     return numpy.asarray(made) if numpy is not None else memoryview(made)
+
+
+def of_bytes(numbers: bytes) -> Array:
+    """A vector of the numbers of float64 in bytes, not copied."""
+    return numpy.frombuffer(numbers) if numpy is not None else memoryview(numbers).cast("d")
