@@ -22,14 +22,14 @@ test_with() { # INTERPRETER
         fi
         (cd python/tests && PYTHONPATH=$path "$1" -W error::ResourceWarning -m unittest -q) \
             >"$place/log" 2>&1 || { cat "$place/log"; echo "failed: $1 $numpy NumPy"; exit 1; }
-        echo "$("$1" -V), $numpy NumPy: $(sed -n 's/^Ran \(.* tests\) .*/\1/p' "$place/log")"
+        echo "$1 ($("$1" -V)), $numpy NumPy: $(sed -n 's/^Ran \(.* tests\) .*/\1/p' "$place/log")"
     done
 }
 
 number=0 seen=
 for interpreter in /usr/bin/python3 /usr/bin/python3.[0-9]* /usr/local/bin/python3.[0-9]* \
     "$HOME"/.pyenv/versions/*/bin/python3; do
-    case $interpreter in *config | *gdb.py) continue ;; esac
+    case $interpreter in *config | *gdb.py | *dbg) continue ;; esac
     [ -x "$interpreter" ] || continue
     "$interpreter" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || continue
     real=$(readlink -f "$interpreter")

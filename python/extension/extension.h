@@ -162,12 +162,21 @@ PyObject *make_model(const imk_model *model, imk_document *document);
 /** Add the type to the module. */
 bool add_model(PyObject *module);
 
+/** Add the type of sensors that are stepped to the module. */
+bool add_sensor(PyObject *module);
 /** Add the constants of identification to the module. */
 bool add_identify(PyObject *module);
 
 /** Functions of the module, by their files; each ends with a row of zeros. */
-extern PyMethodDef record_functions[], allan_functions[], identify_functions[], unit_functions[],
-    model_functions[], spectrum_functions[], info_functions[], evaluate_functions[],
-    calibrate_functions[];
+extern PyMethodDef allan_functions[];
+extern PyMethodDef calibrate_functions[];
+extern PyMethodDef evaluate_functions[];
+extern PyMethodDef identify_functions[];
+extern PyMethodDef info_functions[];
+extern PyMethodDef model_functions[];
+extern PyMethodDef record_functions[];
+extern PyMethodDef sensor_functions[];
+extern PyMethodDef spectrum_functions[];
+extern PyMethodDef unit_functions[];
 
 #endif

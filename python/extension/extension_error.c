@@ -4,6 +4,8 @@
 
 #include "imukit/io.h"
 
+#include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 
 static PyObject *error_class, *file_error_class;
@@ -35,9 +37,48 @@ static bool set_attribute(PyObject *object, const char *name, PyObject *value)
     return set;
 }
 
+/* Options of the command become arguments: "add --rate 100Hz" is "add rate='100Hz'", "--gyro-unit"
+ * is "gyro_unit". @return what follows in the message */
+static const char *put_argument(const char *option, char **to)
+{
+    const char *at = option + 2;
+    for (; islower((unsigned char)*at) || *at == '-'; at++)
+        *(*to)++ = *at == '-' ? '_' : *at;
+    if (*at != ' ')
+        return at;
+    size_t length = strcspn(at + 1, " ,;:)\"");
+    char value[128];
+    snprintf(value, sizeof value, "%.*s", (int)length, at + 1);
+    const bool number = strspn(value, "0123456789") == strlen(value);
+    const bool word = strpbrk(value, "0123456789_=/") != NULL;
+    if (at[1] == '"') {
+        *(*to)++ = '=';
+        return at + 1;
+    }
+    if (!word && !isupper((unsigned char)value[0]))
+        return at;
+    length -= length > 0 && at[length] == '.';
+    *to += sprintf(*to, word && !number ? "='%.*s'" : "=%.*s", (int)length, at + 1);
+    return at + 1 + length;
+}
+
 static PyObject *text_of(const char *text)
 {
-    return PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "replace");
+    char *words = PyMem_Malloc(2 * strlen(text) + 1), *end = words;
+    if (!words)
+        return PyErr_NoMemory();
+    for (char before = ' '; *text;) {
+        const bool option = strncmp(text, "--", 2) == 0 && islower((unsigned char)text[2]) &&
+                            strchr(" (\"'", before);
+        before = *text;
+        if (option)
+            text = put_argument(text, &end);
+        else
+            *end++ = *text++;
+    }
+    PyObject *object = PyUnicode_DecodeUTF8(words, end - words, "replace");
+    PyMem_Free(words);
+    return object;
 }
 
 /* @param findings  a list; NULL: none */

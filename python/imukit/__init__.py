@@ -11,12 +11,36 @@ from ._estimates import Estimate
 from ._identify import IdentifyResult, identify
 from ._info import InfoResult, info
 from ._log import Log, read_log
-from ._model import Model
+from ._model import Device, Model, devices
+from ._sensor import Sensor
 from ._results import DataWarning, Fields, Finding, Result
 from ._spectrum import SpectrumCurve, SpectrumLine, SpectrumResult, spectrum
 
 __all__ = [
-    "AllanCurve", "AllanResult", "DataWarning", "Error", "Estimate", "Fields", "FileError",
-    "Finding", "IdentifyResult", "InfoResult", "Log", "Model", "Result", "SpectrumCurve",
-    "SpectrumLine", "SpectrumResult", "allan", "convert_unit", "identify", "info", "normal_gravity",
-    "read_log", "spectrum"]
+    "AllanCurve",
+    "AllanResult",
+    "DataWarning",
+    "Device",
+    "Error",
+    "Estimate",
+    "Fields",
+    "FileError",
+    "Finding",
+    "IdentifyResult",
+    "InfoResult",
+    "Log",
+    "Model",
+    "Result",
+    "Sensor",
+    "SpectrumCurve",
+    "SpectrumLine",
+    "SpectrumResult",
+    "allan",
+    "convert_unit",
+    "devices",
+    "identify",
+    "info",
+    "normal_gravity",
+    "read_log",
+    "spectrum",
+]

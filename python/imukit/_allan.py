@@ -69,8 +69,8 @@ def _curve(channel: dict[str, Any]) -> AllanCurve:
 
     unit = points[0]["deviation"]["unit"] if points else ""
     return AllanCurve(channel["name"], channel["statistic"], unit,
-                      *(vector(key) for key in ("tau", "deviation", "lower", "upper", "edf",
-                                                "count", "used")),
+                      vector("tau"), vector("deviation"), vector("lower"), vector("upper"),
+                      vector("edf"), vector("count"), vector("used"),
                       tuple(p["noise"] for p in points))
 
 

@@ -18,7 +18,7 @@ Array = Any
 def of_numbers(numbers: Iterable[float | None]) -> Array:
     """A vector of numbers; None becomes NaN."""
     made = array.array("d", (math.nan if x is None else x for x in numbers))
-    return numpy.frombuffer(made) if numpy is not None and made else _view(made)
+    return _view(made)
 
 
 def of_buffer(buffer: Any) -> Array:
@@ -26,11 +26,24 @@ def of_buffer(buffer: Any) -> Array:
     return numpy.asarray(buffer) if numpy is not None else memoryview(buffer)
 
 
+def of_array(values: Any) -> Any:
+    """An array of NumPy of what can become one, such as a column of a table."""
+    import numpy as found
+    return found.asarray(values)
+
+
 def empty(rows: int) -> Array:
     """A vector to be written."""
     if numpy is not None:
         return numpy.empty(rows)
     return _view(array.array("d", bytes(8 * rows)))
+
+
+def matrix(vector: Array, rows: int, columns: int) -> Array:
+    """The numbers of a vector as rows, not copied."""
+    if numpy is not None:
+        return vector.reshape(rows, columns)
+    return vector.cast("B").cast("d", (rows, columns))
 
 
 def _view(made: array.array[float]) -> Array:

@@ -64,7 +64,7 @@ def _names(count: int) -> list[str]:
 def _count(arrays: Any) -> int:
     if isinstance(arrays, list):
         return len(arrays)
-    shape = memoryview(arrays).shape
+    shape = memoryview(arrays).shape or ()
     return shape[1] if len(shape) == 2 else 1
 
 
@@ -73,8 +73,8 @@ def _column(values: Any) -> Any:
     try:
         memoryview(values)
     except TypeError:
-        if hasattr(values, "__array__") and _arrays.numpy is not None:
-            return _arrays.numpy.asarray(values)
+        if hasattr(values, "__array__"):
+            return _arrays.of_array(values)
         if not isinstance(values, Sequence) or isinstance(values, (str, bytes)):
             values = list(values)
     return values

@@ -2,6 +2,7 @@
 """Logs in memory."""
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
@@ -25,6 +26,7 @@ class Log(Mapping[str, Any]):
         """SI unit of each column"""
         self.written_units = {name: unit for name, unit, _, _ in columns}
         """unit of each column in the file"""
+        self.interval: float
         (self.rows, self.interval, self.first_time, self.last_time, self.time_origin, self.gaps,
          self.missing, self.not_finite, self.damaged, self.time_origin_nanoseconds) = numbers
         self._columns = {name: numbers for name, _, _, numbers in columns}
@@ -32,7 +34,7 @@ class Log(Mapping[str, Any]):
     @property
     def rate(self) -> float:
         """Sampling rate [Hz]: 1 over the median interval."""
-        return 1 / self.interval if self.interval else float("nan")
+        return 1.0 / self.interval if self.interval else math.nan
 
     def __getitem__(self, name: str) -> _arrays.Array:
         return _arrays.of_buffer(self._columns[name])

@@ -2,9 +2,11 @@
 """What the functions of imukit give back."""
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import html
 import json
+import os
 import warnings
 from typing import Any, Iterator, Mapping
 
@@ -137,6 +139,29 @@ class Result:
         if self._figure is False:
             self._figure = self._core.figure()
         return self._figure  # type: ignore[return-value]
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the page (.html), the figure (.svg), the data (.json) or the text (any other
+        ending). Raises ValueError for a figure that the result does not have."""
+        name = os.fspath(path)
+        kind = os.path.splitext(name)[1]
+        text: str | None = str(self)
+        if kind == ".html":
+            text = self.page()
+        elif kind == ".svg":
+            text = self.figure()
+        elif kind == ".json":
+            text = json.dumps(self._data, indent=1)
+        if text is None:
+            raise ValueError(f"{name}: the result has no figure")
+        try:
+            with open(f"{name}.part", "w", encoding="utf-8") as file:
+                file.write(text)
+            os.replace(f"{name}.part", name)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                os.unlink(f"{name}.part")
+            raise OSError(error.errno, error.strerror, name) from None
 
     def page(self) -> str:
         """A page (HTML) with all tables and figures. Not of an unpickled result."""

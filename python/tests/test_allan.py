@@ -4,6 +4,7 @@ import array
 import math
 import pickle
 import random
+import tempfile
 import unittest
 
 import imukit
@@ -93,6 +94,14 @@ class Refused(unittest.TestCase):
         self.refused(TypeError, "only for a log", x, 1, topic="/imu")
         self.refused(imukit.Error, "deg/s", x, "1 deg/s")
         self.refused(ValueError, "threads", x, 1, threads=-1)
+
+    def test_options_are_arguments(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
+            file.write("gyro_x [deg/s]\n1\n2\n3\n")
+            file.flush()
+            self.refused(imukit.Error, "add rate=RATE (samples per second, as in rate='100Hz'",
+                         file.name)
+            self.assertEqual(imukit.read_log(file.name, rate="100Hz").rows, 3)
 
     def test_error_is_whole(self):
         error = self.refused(imukit.FileError, "no_such.csv", "no_such.csv")

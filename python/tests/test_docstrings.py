@@ -38,6 +38,9 @@ class Docstrings(unittest.TestCase):
                 for argument in inspect.signature(thing).parameters:
                     with self.subTest(f"{module.__name__}.{name}: {argument}"):
                         self.assertIn(argument, thing.__doc__)
+                with self.subTest(f"{module.__name__}.{name}"):
+                    self.assertIn("Raises", thing.__doc__)
+                    self.assertRegex(thing.__doc__, r"Source: |docs/", "no source")
 
     def test_examples(self):
         for module in modules():

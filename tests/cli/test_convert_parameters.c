@@ -302,7 +302,7 @@ static void test_json(void **state)
         lost = lost || strcmp(kind, "lost") == 0;
     }
     assert_true(assumed && lost);
-    assert_true(json_array_size(json_object_get(root, "warnings")) > 0);
+    assert_true(json_array_size(json_object_get(root, "findings")) > 0);
     json_decref(root);
     sweep();
 }
