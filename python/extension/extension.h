@@ -169,6 +169,8 @@ bool add_identify(PyObject *module);
 
 /** Functions of the module, by their files; each ends with a row of zeros. */
 extern PyMethodDef allan_functions[];
+extern PyMethodDef calibrate_functions[];
+extern PyMethodDef evaluate_functions[];
 extern PyMethodDef identify_functions[];
 extern PyMethodDef info_functions[];
 extern PyMethodDef model_functions[];
