@@ -105,10 +105,11 @@ static int start(campaign_job *job, size_t at_once, const char *path, bool value
         return command_error(&error, NULL);
     if (values_wanted && (job->runs > SIZE_MAX / sizeof(double) / job->run_values ||
                           !(job->values = malloc(job->runs * job->run_values * sizeof(double)))))
-        return command_failed("memory is exhausted: %llu runs are too many to hold at once",
-                              (unsigned long long)job->runs);
+        return command_failed_by("memory", NULL, NULL,
+                                 "memory is exhausted: %llu runs are too many to hold at once",
+                                 (unsigned long long)job->runs);
     if (!make_batches(job, at_once))
-        return command_failed("memory is exhausted");
+        return command_failed_by("memory", NULL, NULL, "memory is exhausted");
     if (job->values && read_values(job, &error) != IMK_OK)
         return command_error(&error, NULL);
     return -1;
@@ -127,8 +128,8 @@ int campaign_job_open(campaign_job *job, const imk_campaign *campaign, uint64_t 
     }
     if (job->writer) {
         if (job->due < runs)
-            command_note("%llu of %llu runs exist already", (unsigned long long)(runs - job->due),
-                         (unsigned long long)runs);
+            command_note("runs_exist", "%llu of %llu runs exist already",
+                         (unsigned long long)(runs - job->due), (unsigned long long)runs);
         catch_signals(path);
     }
     job->line = progress_begin("Monte Carlo", "runs", 1);

@@ -57,7 +57,7 @@ int compensate_models(const compensate_options *o, const char *name, imk_model *
 
 int compensate_end(const compensate_options *o, imk_result *result)
 {
-    const int code = o->strict && command_warning_count() > 0 ? EXIT_FAILED : EXIT_DONE;
+    const int code = o->strict && told_warnings() > 0 ? EXIT_FAILED : EXIT_DONE;
     if (!o->json)
         show_aside(result);
     return show_end(result, &(show_options){.json = o->json, .quiet = true}, code);

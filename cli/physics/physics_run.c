@@ -82,8 +82,9 @@ static int tell(const physics *p, const imk_physics_log *run, imk_status status,
         return -1;
     if (!failure)
         return physics_refused(p, error);
-    return strcmp(failure->code, "not_written") == 0 ? command_error(error, NULL)
-                                                     : command_failed("%s", text);
+    return strcmp(failure->code, "not_written") == 0
+               ? command_error(error, NULL)
+               : command_failed_by(imk_finding_code(failure), error, NULL, "%s", text);
 }
 
 int physics_run_make(const physics *p, imk_physics_log **run)

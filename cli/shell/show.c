@@ -26,8 +26,9 @@ void show_origin(imk_result *result)
 
 void show_warnings(imk_result *result)
 {
-    for (size_t i = 0; i < command_warning_count(); i++)
-        imk_result_finding(result, 2, command_warning_get(i)->message);
+    for (size_t i = 0; i < told_count(); i++)
+        if (told_get(i)->level == IMK_FINDING_WARNING)
+            imk_result_finding(result, 2, told_get(i)->message);
 }
 
 void show_model(imk_result *result, const char *title, const imk_model *model)
@@ -43,19 +44,6 @@ void show_model(imk_result *result, const char *title, const imk_model *model)
         imk_result_line(result, "%s", reason);
     }
     free(text);
-}
-
-static void add_warnings(imk_result *result)
-{
-    imk_result_array(result, "warnings");
-    for (size_t i = 0; i < command_warning_count(); i++) {
-        const command_warning *warning = command_warning_get(i);
-        imk_result_object(result, NULL);
-        imk_result_text(result, "code", warning->code);
-        imk_result_text(result, "message", warning->message);
-        imk_result_end(result);
-    }
-    imk_result_end(result);
 }
 
 /* @return -1 or the exit code */
@@ -126,19 +114,20 @@ static int draw_nothing(const char *lacking)
     return command_error(&error, NULL);
 }
 
+/* JSON comes last, since it tells what failed, too. */
 int show_end(imk_result *result, const show_options *options, int code)
 {
     int failed = options->report ? write_page(result, options->report) : -1;
-    if (failed < 0 && options->json) {
-        add_warnings(result);
-        print(result, true, stdout);
-    } else if (failed < 0 && !options->quiet && !options_stdout_taken()) {
+    if (failed < 0 && !options->json && !options->quiet && !options_stdout_taken())
         print(result, false, stdout);
-    }
     if (failed < 0 && options->plot && options->lacking)
         failed = draw_nothing(options->lacking);
     else if (failed < 0 && options->plot)
         failed = draw(result, options->plot);
+    if (options->json) {
+        told_show(result);
+        print(result, true, stdout);
+    }
     imk_result_free(result);
     return failed < 0 ? code : failed;
 }

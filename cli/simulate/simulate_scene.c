@@ -244,4 +244,5 @@ void scene_free(scene *s)
 {
     imk_motion_file_free(s->motion);
     imk_temperature_file_free(s->temperature);
+    imk_result_free(s->result);
 }

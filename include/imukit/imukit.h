@@ -46,6 +46,7 @@
 #include "imukit/model.h"
 #include "imukit/model_join.h"
 #include "imukit/model_parameter.h"
+#include "imukit/model_path.h"
 #include "imukit/model_unstated.h"
 #include "imukit/motion.h"
 #include "imukit/motion_script.h"

@@ -289,6 +289,9 @@ typedef struct imk_log_sink {
     int64_t origin;         /**< see imk_log_write_origin() [ns] */
     imk_log_writer *writer; /**< its own */
     imk_record_source labels;
+    uint64_t rows; /**< written so far */
+    size_t column_count;
+    imk_log_column column[IMK_LOG_COLUMNS_MAX]; /**< as they are in the file */
 } imk_log_sink;
 
 /** Make a record sink of a log, whose path and precision must be set. */

@@ -18,6 +18,7 @@
 #include "imukit/physics_log.h"
 #include "imukit/record_plan.h"
 #include "imukit/result.h"
+#include "imukit/simulate_log.h"
 #include "imukit/spectrum_log.h"
 #include "imukit/technology_map.h"
 #include "imukit/tune_model.h"
@@ -55,6 +56,17 @@ IMK_API void imk_show_spectrum_log(const imk_spectrum_log *spectrum, const char 
 
 /** Show the attitude at the start, the track and its end, and a figure. */
 IMK_API void imk_show_navigate_log(const imk_navigate_log *n, const char *name, imk_result *result);
+/** Show the settings of a simulation. The logs that it wrote are shown by imk_show_written().
+ *  @param model,motion,temperature  names of the files; NULL: none
+ *  @param runs                      number of runs */
+IMK_API void imk_show_simulate_inputs(const imk_simulate_log_settings *settings, const char *model,
+                                      const char *motion, const char *temperature, uint64_t runs,
+                                      imk_result *result);
+/** Show a log that was written, as data only.
+ *  @param key      NULL in an array
+ *  @param columns  `column_count` of them, with the units of the file */
+IMK_API void imk_show_written(const char *key, const char *file, uint64_t rows, size_t column_count,
+                              const imk_log_column *columns, imk_result *result);
 /** Show the terms taken out, and the counts of the run. @param model  name of the model */
 IMK_API void imk_show_compensate_log(const imk_compensate_log *log, const char *name,
                                      const char *model, imk_result *result);
