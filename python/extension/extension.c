@@ -3,7 +3,7 @@
 #include "extension.h"
 
 static PyMethodDef *const functions[] = {record_functions, allan_functions, identify_functions,
-                                         unit_functions, model_functions};
+                                         unit_functions,   model_functions, simulate_functions};
 
 static struct PyModuleDef definition = {
     PyModuleDef_HEAD_INIT,
@@ -16,7 +16,7 @@ PyMODINIT_FUNC PyInit__core(void)
 {
     PyObject *module = PyModule_Create(&definition);
     bool good = module && add_errors(module) && add_result(module) && add_record(module) &&
-                add_model(module) && add_identify(module) &&
+                add_model(module) && add_identify(module) && add_simulate(module) &&
                 PyModule_AddStringConstant(module, "version", imk_version()) == 0;
     for (size_t k = 0; good && k < sizeof functions / sizeof functions[0]; k++)
         good = PyModule_AddFunctions(module, functions[k]) == 0;

@@ -160,8 +160,11 @@ bool add_model(PyObject *module);
 /** Add the constants of identification to the module. */
 bool add_identify(PyObject *module);
 
+/** Add the type of simulations to the module. */
+bool add_simulate(PyObject *module);
+
 /** Functions of the module, by their files; each ends with a row of zeros. */
 extern PyMethodDef record_functions[], allan_functions[], identify_functions[], unit_functions[],
-    model_functions[];
+    model_functions[], simulate_functions[];
 
 #endif

@@ -10,8 +10,11 @@ from ._core import version as __version__
 from ._identify import IdentifyResult, identify
 from ._log import Log, read_log
 from ._model import Device, Model, devices
+from ._motion import Motion
 from ._results import DataWarning, Fields, Finding, Result
+from ._simulate import Blocks, simulate, simulate_blocks, simulate_runs, simulate_truth
 
-__all__ = ["AllanCurve", "AllanResult", "DataWarning", "Error", "Fields", "FileError", "Finding",
-           "IdentifyResult", "Log", "Device", "Model", "Result", "devices", "allan", "convert_unit", "identify",
-           "normal_gravity", "read_log"]
+__all__ = ["AllanCurve", "AllanResult", "Blocks", "DataWarning", "Device", "Error", "Fields",
+           "FileError", "Finding", "IdentifyResult", "Log", "Model", "Motion", "Result", "allan",
+           "convert_unit", "devices", "identify", "normal_gravity", "read_log", "simulate",
+           "simulate_blocks", "simulate_runs", "simulate_truth"]
