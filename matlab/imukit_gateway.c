@@ -62,19 +62,6 @@ static void warn(void)
     }
 }
 
-static mxArray *notes(void)
-{
-    const gateway_call *call = gateway_now();
-    size_t count = 0, at = 0;
-    for (size_t i = 0; i < call->told_count; i++)
-        count += call->told[i].kind == VOICE_NOTE;
-    mxArray *cell = mxCreateCellMatrix(count, count > 0);
-    for (size_t i = 0; i < call->told_count; i++)
-        if (call->told[i].kind == VOICE_NOTE)
-            mxSetCell(cell, at++, mxCreateString(call->told[i].text));
-    return cell;
-}
-
 static void set(mxArray *result, const char *name, mxArray *value)
 {
     mxSetFieldByNumber(result, 0, mxAddField(result, name), value);
@@ -102,7 +89,6 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[])
         set(result, "columns", columns);
         set(result, "data", data);
     }
-    set(result, "notes", notes());
     if (call->model)
         set(result, "model", mxCreateString(call->model));
     plhs[0] = result;

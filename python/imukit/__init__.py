@@ -7,14 +7,48 @@ may stand for it: "0.1 deg/s".
 from ._allan import AllanCurve, AllanResult, allan
 from ._core import Error, FileError, convert_unit, normal_gravity
 from ._core import version as __version__
+from ._estimates import Estimate
 from ._identify import IdentifyResult, identify
+from ._info import InfoResult, info
 from ._log import Log, read_log
 from ._model import Device, Model, devices
 from ._motion import Motion
 from ._results import DataWarning, Fields, Finding, Result
+from ._sensor import Sensor
 from ._simulate import Blocks, simulate, simulate_blocks, simulate_runs, simulate_truth
+from ._spectrum import SpectrumCurve, SpectrumLine, SpectrumResult, spectrum
 
-__all__ = ["AllanCurve", "AllanResult", "Blocks", "DataWarning", "Device", "Error", "Fields",
-           "FileError", "Finding", "IdentifyResult", "Log", "Model", "Motion", "Result", "allan",
-           "convert_unit", "devices", "identify", "normal_gravity", "read_log", "simulate",
-           "simulate_blocks", "simulate_runs", "simulate_truth"]
+__all__ = [
+    "AllanCurve",
+    "AllanResult",
+    "Blocks",
+    "DataWarning",
+    "Device",
+    "Error",
+    "Estimate",
+    "Fields",
+    "FileError",
+    "Finding",
+    "IdentifyResult",
+    "InfoResult",
+    "Log",
+    "Model",
+    "Motion",
+    "Result",
+    "Sensor",
+    "SpectrumCurve",
+    "SpectrumLine",
+    "SpectrumResult",
+    "allan",
+    "convert_unit",
+    "devices",
+    "identify",
+    "info",
+    "normal_gravity",
+    "read_log",
+    "simulate",
+    "simulate_blocks",
+    "simulate_runs",
+    "simulate_truth",
+    "spectrum",
+]
