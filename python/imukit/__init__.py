@@ -12,13 +12,16 @@ from ._identify import IdentifyResult, identify
 from ._info import InfoResult, info
 from ._log import Log, read_log
 from ._model import Device, Model, devices
+from ._motion import Motion
 from ._results import DataWarning, Fields, Finding, Result
 from ._sensor import Sensor
+from ._simulate import Blocks, simulate, simulate_blocks, simulate_runs, simulate_truth
 from ._spectrum import SpectrumCurve, SpectrumLine, SpectrumResult, spectrum
 
 __all__ = [
     "AllanCurve",
     "AllanResult",
+    "Blocks",
     "DataWarning",
     "Device",
     "Error",
@@ -30,6 +33,7 @@ __all__ = [
     "InfoResult",
     "Log",
     "Model",
+    "Motion",
     "Result",
     "Sensor",
     "SpectrumCurve",
@@ -42,5 +46,9 @@ __all__ = [
     "info",
     "normal_gravity",
     "read_log",
+    "simulate",
+    "simulate_blocks",
+    "simulate_runs",
+    "simulate_truth",
     "spectrum",
 ]
