@@ -3,7 +3,8 @@
 #include "extension.h"
 
 static PyMethodDef *const functions[] = {record_functions, allan_functions, identify_functions,
-                                         unit_functions, model_functions};
+                                         unit_functions,   model_functions, drift_functions,
+                                         grade_functions};
 
 static struct PyModuleDef definition = {
     PyModuleDef_HEAD_INIT,
