@@ -112,8 +112,7 @@ function test_values ()
   % sqrt(mean of squared differences/2): differences 1, -1, 2, -1, 2
   assert (points(1).deviation.value, sqrt (11 / 5 / 2), 1e-15);
   assert (points(1).tau.unit, 's');
-  assert (isempty (evaluation.warnings) || isstruct (evaluation.warnings));
-  assert (iscell (evaluation.notes));
+  assert (isempty (evaluation.findings) || isstruct (evaluation.findings));
 end
 
 function test_files (shared)
@@ -190,14 +189,26 @@ function test_simulate ()
   assert (counts.columns{2}, 'gyro_x [count]');
 end
 
+% The last warning of the findings is the last that was given, and can be made an error.
 function test_warnings ()
-  lastwarn ('');
-  warning ('on', 'imukit:short');
-  result = imukit_identify (sin (1:4000)' + randn (4000, 1), 100, 'columns', 'gyro_x');
-  assert (isstruct (result.warnings) && numel (result.warnings) > 0);
-  [~, id] = lastwarn ();
+  rest = @() imukit_identify (sin ((1:4000)' / 50) + 0.1 * randn (4000, 1), 100, 'columns', 'gyro_x');
+  warning ('on', 'all');
+  result = rest ();
+  [text, id] = lastwarn ();
   warning ('off', 'all');
-  assert (all (isfield (result.warnings, {'code', 'message'})));
+  told = result.findings(strcmp ({result.findings.level}, 'warning'));
+  assert (! isempty (told));
+  assert (id, ['imukit:', told(end).code]);
+  assert (any (strfind (text, told(end).message)));
+  warning ('error', id);
+  try
+    rest ();
+    id = 'nothing';
+  catch e
+    assert (e.identifier, id);
+  end
+  warning ('off', 'all');
+  assert (! strcmp (id, 'nothing'));
 end
 
 function test_help ()
@@ -214,8 +225,11 @@ function refused (message, id, varargin)
   try
     imukit_call (varargin{1}, varargin(2:end));
   catch e
-    assert (strcmp (e.identifier, id) && any (strfind (e.message, message)), '%s: %s', ...
-      e.identifier, e.message);
+    % of data: any identifier but that of wrong arguments
+    due = strcmp (e.identifier, id) || ...
+      (strcmp (id, 'imukit:failed') && ~strcmp (e.identifier, 'imukit:usage') && ...
+       ~isempty (regexp (e.identifier, '^imukit:[a-z_]+$', 'once')));
+    assert (due && any (strfind (e.message, message)), '%s: %s', e.identifier, e.message);
     return
   end
   error ('nothing refused: %s', message);
@@ -245,7 +259,7 @@ function test_refusals ()
   end
   refused ('time', f, 'allan', x, [], gyro{:}); % neither a rate nor a time
   refused ('in the file twice', f, 'allan', x, 100, 'columns', 'gyro_x,gyro_x,gyro_y');
-  refused ('finite values', f, 'identify', NaN (1000, 3), 100, gyro{:});
+  refused ('finite values', 'imukit:too_few_values', 'identify', NaN (1000, 3), 100, gyro{:});
   refused ('a log is missing', u, 'allan');
   refused ('expected a log', u, 'allan', '');
   refused ('expected a log', u, 'allan', struct ('a', 1));

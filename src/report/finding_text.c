@@ -284,7 +284,6 @@ static const struct message {
                          "--resolution, or --gaps longest"},
     {"resolution", "--resolution {0g} Hz: {name}; this record of {1g} s at {2g} Hz allows about "
                    "{3.2g} Hz to {4.2g} Hz"},
-    {"from_beyond", "{1.6g} Hz"},
     {"gaps", "{name}: {0} of {1} segments have missing samples and were left out"},
     {"lines", "{name}: more than {0} lines; the strongest are listed"},
     {"fit", "{name}: the noise parameters could not be fitted: {0t}"},
