@@ -2,15 +2,10 @@
 /* The module imukit._core. */
 #include "extension.h"
 
-<<<<<<< HEAD
-static PyMethodDef *const functions[] = {record_functions, allan_functions, identify_functions,
-                                         unit_functions,   model_functions, simulate_functions};
-=======
 static PyMethodDef *const functions[] = {
-    allan_functions,  identify_functions, info_functions,     model_functions,
-    record_functions, sensor_functions,   spectrum_functions, unit_functions,
+    allan_functions,  identify_functions, info_functions,     model_functions, record_functions,
+    sensor_functions, simulate_functions, spectrum_functions, unit_functions,
 };
->>>>>>> c66c3f6d6c1c911600dc2d6429bdc4f50695b3fe
 
 static struct PyModuleDef definition = {
     PyModuleDef_HEAD_INIT,
@@ -23,11 +18,8 @@ PyMODINIT_FUNC PyInit__core(void)
 {
     PyObject *module = PyModule_Create(&definition);
     bool good = module && add_errors(module) && add_result(module) && add_record(module) &&
-<<<<<<< HEAD
-                add_model(module) && add_identify(module) && add_simulate(module) &&
-=======
                 add_model(module) && add_sensor(module) && add_identify(module) &&
->>>>>>> c66c3f6d6c1c911600dc2d6429bdc4f50695b3fe
+                add_simulate(module) &&
                 PyModule_AddStringConstant(module, "version", imk_version()) == 0;
     for (size_t k = 0; good && k < sizeof functions / sizeof functions[0]; k++)
         good = PyModule_AddFunctions(module, functions[k]) == 0;

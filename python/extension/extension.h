@@ -171,10 +171,6 @@ bool add_identify(PyObject *module);
 bool add_simulate(PyObject *module);
 
 /** Functions of the module, by their files; each ends with a row of zeros. */
-<<<<<<< HEAD
-extern PyMethodDef record_functions[], allan_functions[], identify_functions[], unit_functions[],
-    model_functions[], simulate_functions[];
-=======
 extern PyMethodDef allan_functions[];
 extern PyMethodDef calibrate_functions[];
 extern PyMethodDef evaluate_functions[];
@@ -183,8 +179,8 @@ extern PyMethodDef info_functions[];
 extern PyMethodDef model_functions[];
 extern PyMethodDef record_functions[];
 extern PyMethodDef sensor_functions[];
+extern PyMethodDef simulate_functions[];
 extern PyMethodDef spectrum_functions[];
 extern PyMethodDef unit_functions[];
->>>>>>> c66c3f6d6c1c911600dc2d6429bdc4f50695b3fe
 
 #endif
