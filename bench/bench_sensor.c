@@ -287,7 +287,7 @@ static void bench_batch(const char *name, const imk_model *model, int hundredths
     job work = job_of(sensor, SENSORS, steps, shared);
     draws normals = {imk_random_seeded(1), all / 100 * CHANNELS * (size_t)hundredths};
     double ours, drawing;
-    bench_compare(8, run_job, &work, run_draws, &normals, &ours, &drawing);
+    bench_compare(16, run_job, &work, run_draws, &normals, &ours, &drawing);
     bench_row_speed(name, 1e-6 * (double)all / ours, 1e-6 * (double)all / drawing, "M/s", isa, 1);
     end_job(&work);
     free(memory);

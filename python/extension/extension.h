@@ -172,8 +172,8 @@ bool add_simulate(PyObject *module);
 
 /** Functions of the module, by their files; each ends with a row of zeros. */
 extern PyMethodDef allan_functions[];
-extern PyMethodDef calibrate_functions[];
-extern PyMethodDef evaluate_functions[];
+extern PyMethodDef drift_functions[];
+extern PyMethodDef grade_functions[];
 extern PyMethodDef identify_functions[];
 extern PyMethodDef info_functions[];
 extern PyMethodDef model_functions[];

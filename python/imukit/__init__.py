@@ -7,7 +7,9 @@ may stand for it: "0.1 deg/s".
 from ._allan import AllanCurve, AllanResult, allan
 from ._core import Error, FileError, convert_unit, normal_gravity
 from ._core import version as __version__
+from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
 from ._estimates import Estimate
+from ._grade import GradeResult, grade
 from ._identify import IdentifyResult, identify
 from ._info import InfoResult, info
 from ._log import Log, read_log
@@ -24,11 +26,17 @@ __all__ = [
     "Blocks",
     "DataWarning",
     "Device",
+    "DriftGrowth",
+    "DriftMoments",
+    "DriftResult",
+    "DriftRuns",
+    "DriftShare",
     "Error",
     "Estimate",
     "Fields",
     "FileError",
     "Finding",
+    "GradeResult",
     "IdentifyResult",
     "InfoResult",
     "Log",
@@ -42,6 +50,8 @@ __all__ = [
     "allan",
     "convert_unit",
     "devices",
+    "drift",
+    "grade",
     "identify",
     "info",
     "normal_gravity",

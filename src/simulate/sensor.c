@@ -102,6 +102,7 @@ static size_t divide(const imk_model *model, const imk_sensor_settings *settings
     made.channel = imki_take(parts, count * channels * sizeof *made.channel);
     made.number = imki_take(parts, IMKI_SENSOR_NUMBERS * channels * places * sizeof(double));
     const size_t zero = parts->used;
+    made.rows = imki_take(parts, IMKI_SENSOR_ROWS * imki_row_places(count) * sizeof(double));
     made.axis = imki_take(parts, channels * sizeof *made.axis);
     made.quantizer = imki_take(parts, channels * sizeof *made.quantizer);
     for (int kind = 0; kind < 2; kind++)
@@ -139,14 +140,14 @@ static void start_exposure(imk_sensor *s, const imk_model *model,
 {
     imk_stimulus stimulus = {.temperature = NULL};
     for (int i = 0; i < 3; i++) {
-        stimulus.angular_rate[i] = s->row[i];
-        stimulus.specific_force[i] = s->row[IMKI_SENSOR_FORCE + i];
-        stimulus.angular_acceleration[i] = s->row[IMKI_SENSOR_ACCELERATION + i];
+        stimulus.angular_rate[i] = imki_sensor_row(s, i);
+        stimulus.specific_force[i] = imki_sensor_row(s, IMKI_SENSOR_FORCE + i);
+        stimulus.angular_acceleration[i] = imki_sensor_row(s, IMKI_SENSOR_ACCELERATION + i);
     }
     s->temperature = settings->temperature;
     if (s->temperature) {
-        stimulus.temperature = s->row[IMKI_SENSOR_TEMPERATURE];
-        stimulus.temperature_rate = s->row[IMKI_SENSOR_TEMPERATURE_RATE];
+        stimulus.temperature = imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE);
+        stimulus.temperature_rate = imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE_RATE);
     }
     s->shared_hysteresis = true;
     for (int kind = 0; kind < 2; kind++) {
@@ -155,14 +156,15 @@ static void start_exposure(imk_sensor *s, const imk_model *model,
         s->warm_up_time[kind] = triad->bias.warm_up_time.value;
         s->same_warm_up = stimulus.warm_up[0] && s->warm_up_time[0] == s->warm_up_time[1];
         if (imki_triad_has(triad, &triad->bias.warm_up_amplitude))
-            stimulus.warm_up[kind] = s->row[IMKI_SENSOR_WARM_UP + (s->same_warm_up ? 0 : kind)];
+            stimulus.warm_up[kind] =
+                imki_sensor_row(s, IMKI_SENSOR_WARM_UP + (s->same_warm_up ? 0 : kind));
         for (size_t i = 0; i < s->count && s->hysteresis[kind]; i++)
             s->hysteresis[kind][i] = imk_hysteresis_start(triad);
         s->same_hysteresis = s->hysteresis[0] && s->hysteresis[1] &&
                              s->hysteresis[0][0].span == s->hysteresis[1][0].span;
         if (s->hysteresis[kind])
             stimulus.hysteresis[kind] =
-                s->row[IMKI_SENSOR_HYSTERESIS + (s->same_hysteresis ? 0 : kind)];
+                imki_sensor_row(s, IMKI_SENSOR_HYSTERESIS + (s->same_hysteresis ? 0 : kind));
     }
     for (int kind = 0; kind < 2; kind++)
         s->exposure[kind] = imki_expose(kind, &stimulus);

@@ -34,7 +34,7 @@ enum {
 };
 
 struct imk_sensor {
-    double row[IMKI_SENSOR_ROWS][IMKI_GROUP];
+    double *rows;              /* IMKI_SENSOR_ROWS */
     imki_exposure exposure[2]; /* of gyros and accelerometers to these rows */
     imk_random random;
     uint32_t run;
@@ -80,6 +80,17 @@ static inline double *imki_sensor_numbers(const imk_sensor *s, imki_sensor_numbe
                                           size_t channel)
 {
     return s->number + ((size_t)which * s->channels + channel) * s->places;
+}
+
+/* Places of a row of what a group is exposed to. */
+static inline size_t imki_row_places(size_t count)
+{
+    return count == 1 ? 2 : (size_t)IMKI_GROUP;
+}
+
+static inline double *imki_sensor_row(const imk_sensor *s, int row)
+{
+    return s->rows + (size_t)row * imki_row_places(s->count);
 }
 
 /* The output stage of a channel of some sensors: a response becomes a reading. */

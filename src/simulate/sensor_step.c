@@ -62,11 +62,6 @@ static void make_noise(imk_sensor *s)
 
 /* ---- truth ---- */
 
-static size_t places_of(const imk_sensor *s)
-{
-    return s->count == 1 ? s->places : IMKI_GROUP;
-}
-
 static void repeat(double value, size_t places, double *row)
 {
     for (size_t i = 0; i < places; i++)
@@ -76,14 +71,15 @@ static void repeat(double value, size_t places, double *row)
 /* One truth for all. */
 static void expose_all(imk_sensor *s, const imk_sensor_truth *truth)
 {
-    const size_t places = places_of(s);
+    const size_t places = imki_row_places(s->count);
     for (int i = 0; i < 3; i++) {
-        repeat(truth->angular_rate[i], places, s->row[i]);
-        repeat(truth->specific_force[i], places, s->row[IMKI_SENSOR_FORCE + i]);
-        repeat(truth->angular_acceleration[i], places, s->row[IMKI_SENSOR_ACCELERATION + i]);
+        repeat(truth->angular_rate[i], places, imki_sensor_row(s, i));
+        repeat(truth->specific_force[i], places, imki_sensor_row(s, IMKI_SENSOR_FORCE + i));
+        repeat(truth->angular_acceleration[i], places,
+               imki_sensor_row(s, IMKI_SENSOR_ACCELERATION + i));
     }
-    repeat(truth->temperature, places, s->row[IMKI_SENSOR_TEMPERATURE]);
-    repeat(truth->temperature_rate, places, s->row[IMKI_SENSOR_TEMPERATURE_RATE]);
+    repeat(truth->temperature, places, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE));
+    repeat(truth->temperature_rate, places, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE_RATE));
 }
 
 static void take(const double *truth, size_t first, size_t count, double *row)
@@ -98,14 +94,15 @@ static void take(const double *truth, size_t first, size_t count, double *row)
 static void expose_each(imk_sensor *s, const imk_stimulus *truth, size_t first, size_t count)
 {
     for (int i = 0; i < 3; i++) {
-        take(truth->angular_rate[i], first, count, s->row[i]);
-        take(truth->specific_force[i], first, count, s->row[IMKI_SENSOR_FORCE + i]);
-        take(truth->angular_acceleration[i], first, count, s->row[IMKI_SENSOR_ACCELERATION + i]);
+        take(truth->angular_rate[i], first, count, imki_sensor_row(s, i));
+        take(truth->specific_force[i], first, count, imki_sensor_row(s, IMKI_SENSOR_FORCE + i));
+        take(truth->angular_acceleration[i], first, count,
+             imki_sensor_row(s, IMKI_SENSOR_ACCELERATION + i));
     }
     if (!s->temperature)
         return;
-    take(truth->temperature, first, count, s->row[IMKI_SENSOR_TEMPERATURE]);
-    take(truth->temperature_rate, first, count, s->row[IMKI_SENSOR_TEMPERATURE_RATE]);
+    take(truth->temperature, first, count, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE));
+    take(truth->temperature_rate, first, count, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE_RATE));
 }
 
 /* Power-on is the same moment for all. */
@@ -119,7 +116,7 @@ static void expose_to_warm_up(imk_sensor *s)
         if (within == 0)
             s->warm_up_block[kind] = imki_warm_up_block(s->next, 1, s->interval, time);
         repeat(s->warm_up_block[kind] * imki_warm_up_within(within, s->interval, time),
-               places_of(s), s->row[IMKI_SENSOR_WARM_UP + kind]);
+               imki_row_places(s->count), imki_sensor_row(s, IMKI_SENSOR_WARM_UP + kind));
     }
 }
 
@@ -134,14 +131,14 @@ static double next_hysteresis(imk_hysteresis *hysteresis, double temperature)
 /* As long as all have seen the same temperatures, there is one state. */
 static void expose_to_hysteresis(imk_sensor *s, size_t first, size_t count)
 {
-    const double *temperature = s->row[IMKI_SENSOR_TEMPERATURE];
+    const double *temperature = imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE);
     for (int kind = 0; kind < 2; kind++) {
         imk_hysteresis *hysteresis = s->hysteresis[kind];
-        double *row = s->row[IMKI_SENSOR_HYSTERESIS + kind];
+        double *row = imki_sensor_row(s, IMKI_SENSOR_HYSTERESIS + kind);
         if (!hysteresis || (kind == IMK_ACCEL && s->same_hysteresis))
             continue;
         if (s->shared_hysteresis && first == 0)
-            repeat(next_hysteresis(hysteresis, temperature[0]), places_of(s), row);
+            repeat(next_hysteresis(hysteresis, temperature[0]), imki_row_places(s->count), row);
         for (size_t i = 0; i < count && !s->shared_hysteresis; i++)
             row[i] = next_hysteresis(&hysteresis[first + i], temperature[i]);
     }
