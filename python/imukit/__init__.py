@@ -8,7 +8,8 @@ from ._allan import AllanCurve, AllanResult, allan
 from ._core import Error, FileError, convert_unit, normal_gravity
 from ._core import version as __version__
 from ._estimates import Estimate
-from ._identify import IdentifyResult, identify
+from ._identify import (IdentifyResult, RecordPlan, identify, identify_curve, identify_devices,
+                        identify_runs, plan_record)
 from ._info import InfoResult, info
 from ._log import Log, read_log
 from ._model import Device, Model, devices
@@ -30,6 +31,7 @@ __all__ = [
     "InfoResult",
     "Log",
     "Model",
+    "RecordPlan",
     "Result",
     "Sensor",
     "SpectrumCurve",
@@ -39,8 +41,12 @@ __all__ = [
     "convert_unit",
     "devices",
     "identify",
+    "identify_curve",
+    "identify_devices",
+    "identify_runs",
     "info",
     "normal_gravity",
+    "plan_record",
     "read_log",
     "spectrum",
 ]
