@@ -189,14 +189,26 @@ function test_simulate ()
   assert (counts.columns{2}, 'gyro_x [count]');
 end
 
+% The last warning of the findings is the last that was given, and can be made an error.
 function test_warnings ()
-  lastwarn ('');
-  warning ('on', 'imukit:short');
-  result = imukit_identify (sin (1:4000)' + randn (4000, 1), 100, 'columns', 'gyro_x');
-  assert (isstruct (result.findings) && numel (result.findings) > 0);
-  [~, id] = lastwarn ();
+  rest = @() imukit_identify (sin ((1:4000)' / 50) + 0.1 * randn (4000, 1), 100, 'columns', 'gyro_x');
+  warning ('on', 'all');
+  result = rest ();
+  [text, id] = lastwarn ();
   warning ('off', 'all');
-  assert (all (isfield (result.findings, {'level', 'code', 'message'})));
+  told = result.findings(strcmp ({result.findings.level}, 'warning'));
+  assert (! isempty (told));
+  assert (id, ['imukit:', told(end).code]);
+  assert (any (strfind (text, told(end).message)));
+  warning ('error', id);
+  try
+    rest ();
+    id = 'nothing';
+  catch e
+    assert (e.identifier, id);
+  end
+  warning ('off', 'all');
+  assert (! strcmp (id, 'nothing'));
 end
 
 function test_help ()
@@ -247,7 +259,7 @@ function test_refusals ()
   end
   refused ('time', f, 'allan', x, [], gyro{:}); % neither a rate nor a time
   refused ('in the file twice', f, 'allan', x, 100, 'columns', 'gyro_x,gyro_x,gyro_y');
-  refused ('finite values', f, 'identify', NaN (1000, 3), 100, gyro{:});
+  refused ('finite values', 'imukit:too_few_values', 'identify', NaN (1000, 3), 100, gyro{:});
   refused ('a log is missing', u, 'allan');
   refused ('expected a log', u, 'allan', '');
   refused ('expected a log', u, 'allan', struct ('a', 1));

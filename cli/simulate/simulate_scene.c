@@ -130,8 +130,8 @@ static double motion_length(const scene *s)
     return s->motion ? imk_motion_file_duration(s->motion) : HUGE_VAL;
 }
 
-/* Without the option the job takes the whole motion. */
-static int choose_length(const simulate_options *o, scene *s)
+/* Lengths that the job refuses, too, in terms of the options. */
+static int check_length(const simulate_options *o, scene *s)
 {
     const double rate = s->settings.simulation.rate;
     const double length = motion_length(s);
@@ -157,7 +157,6 @@ static int choose_length(const simulate_options *o, scene *s)
                                imk_motion_file_kind(s->motion) == IMK_MOTION_SCRIPT
                                    ? ", or let the motion end with `then: hold`"
                                    : "");
-    s->settings.rows = (uint64_t)llround(o->duration * rate);
     return -1;
 }
 
@@ -166,8 +165,8 @@ static int complete(const simulate_options *o, const imk_model *model, scene *s)
 {
     imk_findings findings = {.count = 0};
     imk_error error;
-    const imk_status status =
-        imk_simulate_log_complete(model, motion_length(s), &s->settings, &findings, &error);
+    const imk_status status = imk_simulate_log_complete(model, o->duration, motion_length(s),
+                                                        &s->settings, &findings, &error);
     (void)log_input_tell(o->motion, &findings, IMK_OK, NULL);
     return status == IMK_OK ? -1 : command_error(&error, NULL);
 }
@@ -196,7 +195,7 @@ int scene_open(const simulate_options *o, const imk_model *model, scene *s)
     if (code < 0)
         code = choose_rate(o, s);
     if (code < 0)
-        code = choose_length(o, s);
+        code = check_length(o, s);
     if (code < 0)
         code = complete(o, model, s);
     return code;

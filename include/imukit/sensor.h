@@ -20,11 +20,11 @@
  *  which rows timing.drops loses. A magnetometer of the model is not simulated.
  *
  *  If a truth is not finite, the readings that depend on it are NaN in this step. Nothing of it
- *  stays: the filter of the bandwidth begins anew with the next finite input, as at the start, the
- *  sample adds nothing to the integral that is quantized, hysteresis leaves out the temperature,
- * and noise goes on as always.
+ *  stays: the filter of the bandwidth begins anew with the next finite input, as at the start; the
+ *  sample adds nothing to the integral that is quantized; hysteresis leaves out the temperature;
+ *  noise goes on as always.
  *
- *  Noise is made 512 samples ahead, so one step in 512 takes longer: about 50 us for each sensor.
+ *  Noise is made 512 samples ahead, so one step in 512 takes longer: about 50 us for a sensor.
  */
 #ifndef IMUKIT_SENSOR_H
 #define IMUKIT_SENSOR_H

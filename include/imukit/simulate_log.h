@@ -29,13 +29,14 @@ IMK_API imk_simulate_log_settings imk_simulate_log_default(void);
 /** Complete the settings by what follows from the model and the motion, as the command does: the
  *  time of the first row, where a trajectory does not begin at 0; the field of the Earth
  *  (imk_dipole_field()), where it is 0, the model has a magnetometer and the motion an
- *  attitude; and, where `rows` is 0, the rows of the whole motion.
+ *  attitude; and the rows.
+ *  @param duration  of the log [s]; NaN: that of the whole motion
  *  @param length    of the motion [s], imk_motion_file_duration(); infinite: it has no end, and
- *                   `rows` stays 0
+ *                   without a duration `rows` is 0
  *  @param findings  what is left out of the simulation: temperature terms without a temperature,
  *                   the magnetometer on a recorded motion, vibration that is too fast
- *  @return IMK_ERROR_RANGE (rate, rows) */
-IMK_API imk_status imk_simulate_log_complete(const imk_model *model, double length,
+ *  @return IMK_ERROR_RANGE (rate, duration) */
+IMK_API imk_status imk_simulate_log_complete(const imk_model *model, double duration, double length,
                                              imk_simulate_log_settings *settings,
                                              imk_findings *findings, imk_error *error);
 

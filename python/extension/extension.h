@@ -167,15 +167,19 @@ bool add_sensor(PyObject *module);
 /** Add the constants of identification to the module. */
 bool add_identify(PyObject *module);
 
+/** Add the type of simulations to the module. */
+bool add_simulate(PyObject *module);
+
 /** Functions of the module, by their files; each ends with a row of zeros. */
 extern PyMethodDef allan_functions[];
-extern PyMethodDef calibrate_functions[];
-extern PyMethodDef evaluate_functions[];
+extern PyMethodDef drift_functions[];
+extern PyMethodDef grade_functions[];
 extern PyMethodDef identify_functions[];
 extern PyMethodDef info_functions[];
 extern PyMethodDef model_functions[];
 extern PyMethodDef record_functions[];
 extern PyMethodDef sensor_functions[];
+extern PyMethodDef simulate_functions[];
 extern PyMethodDef spectrum_functions[];
 extern PyMethodDef unit_functions[];
 

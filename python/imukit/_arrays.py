@@ -32,6 +32,24 @@ def of_array(values: Any) -> Any:
     return found.asarray(values)
 
 
+def of_bytes(numbers: bytes, columns: int = 1, column: int = 0) -> Array:
+    """A column of a matrix of float64 in memory; read only."""
+    return of_buffer(memoryview(numbers).cast("d")[column::columns])
+
+
+def of_matrix(numbers: bytes, columns: int, which: range, shape: tuple[int, ...],
+              rows: int | None = None) -> Array:
+    """Some columns of a matrix of float64 in memory, each row in a shape."""
+    rows = len(numbers) // (8 * columns) if rows is None else rows
+    if numpy is not None:
+        return numpy.frombuffer(numbers).reshape(rows, columns)[:, which].reshape(rows, *shape)
+    view = memoryview(numbers).cast("d")
+    made = array.array("d")
+    for row in range(rows):
+        made.extend(view[row * columns + which.start:row * columns + which.stop:which.step])
+    return memoryview(made).cast("B").cast("d", (rows, *shape))
+
+
 def empty(rows: int) -> Array:
     """A vector to be written."""
     if numpy is not None:
@@ -48,8 +66,3 @@ def matrix(vector: Array, rows: int, columns: int) -> Array:
 
 def _view(made: array.array[float]) -> Array:
     return numpy.asarray(made) if numpy is not None else memoryview(made)
-
-
-def of_bytes(numbers: bytes) -> Array:
-    """A vector of the numbers of float64 in bytes, not copied."""
-    return numpy.frombuffer(numbers) if numpy is not None else memoryview(numbers).cast("d")

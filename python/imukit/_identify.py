@@ -241,8 +241,8 @@ def plan_record(model: AnyModel, rate: float | str, *, want: str | None = None,
     """
     settings = {"rate": rate, "want": want, "duration": duration, "significance": significance,
                 "curve": True}
-    label = os.fspath(model) if is_path(model) else as_model(model).get("name", "the model")
-    result = RecordPlan(*_core.plan_record(_core_of(model), str(label), settings))
+    label = model if isinstance(model, (str, os.PathLike)) else as_model(model).get("name", "model")
+    result = RecordPlan(*_core.plan_record(_core_of(model), os.fspath(label), settings))
     tell(result)
     return result
 

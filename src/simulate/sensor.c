@@ -102,7 +102,9 @@ static size_t divide(const imk_model *model, const imk_sensor_settings *settings
     made.channel = imki_take(parts, count * channels * sizeof *made.channel);
     made.number = imki_take(parts, IMKI_SENSOR_NUMBERS * channels * places * sizeof(double));
     const size_t zero = parts->used;
+    made.rows = imki_take(parts, IMKI_SENSOR_ROWS * imki_row_places(count) * sizeof(double));
     made.axis = imki_take(parts, channels * sizeof *made.axis);
+    made.quantizer = imki_take(parts, channels * sizeof *made.quantizer);
     for (int kind = 0; kind < 2; kind++)
         if (has_hysteresis(settings, kind == IMK_GYRO ? &model->gyro : &model->accel))
             made.hysteresis[kind] = imki_take(parts, count * sizeof(imk_hysteresis));
@@ -132,20 +134,40 @@ size_t imk_sensor_size(const imk_model *model, const imk_sensor_settings *settin
 
 /* ---- start ---- */
 
-static void start_warm_up_and_hysteresis(imk_sensor *s, const imk_model *model,
-                                         const imk_sensor_settings *settings)
+/* The rows of what the sensors see; memory was set to 0. */
+static void start_exposure(imk_sensor *s, const imk_model *model,
+                           const imk_sensor_settings *settings)
 {
+    imk_stimulus stimulus = {.temperature = NULL};
+    for (int i = 0; i < 3; i++) {
+        stimulus.angular_rate[i] = imki_sensor_row(s, i);
+        stimulus.specific_force[i] = imki_sensor_row(s, IMKI_SENSOR_FORCE + i);
+        stimulus.angular_acceleration[i] = imki_sensor_row(s, IMKI_SENSOR_ACCELERATION + i);
+    }
     s->temperature = settings->temperature;
-    s->hysteresis_shared = true;
+    if (s->temperature) {
+        stimulus.temperature = imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE);
+        stimulus.temperature_rate = imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE_RATE);
+    }
+    s->shared_hysteresis = true;
     for (int kind = 0; kind < 2; kind++) {
         const imk_triad *triad = kind == IMK_GYRO ? &model->gyro : &model->accel;
         s->of_kind[kind] = imki_axes_of(triad);
-        s->warm_up_present[kind] = imki_triad_has(triad, &triad->bias.warm_up_amplitude);
         s->warm_up_time[kind] = triad->bias.warm_up_time.value;
-        s->hysteresis_present[kind] = has_hysteresis(settings, triad);
-        if (s->hysteresis_present[kind])
-            s->hysteresis[kind][0] = imk_hysteresis_start(triad);
+        s->same_warm_up = stimulus.warm_up[0] && s->warm_up_time[0] == s->warm_up_time[1];
+        if (imki_triad_has(triad, &triad->bias.warm_up_amplitude))
+            stimulus.warm_up[kind] =
+                imki_sensor_row(s, IMKI_SENSOR_WARM_UP + (s->same_warm_up ? 0 : kind));
+        for (size_t i = 0; i < s->count && s->hysteresis[kind]; i++)
+            s->hysteresis[kind][i] = imk_hysteresis_start(triad);
+        s->same_hysteresis = s->hysteresis[0] && s->hysteresis[1] &&
+                             s->hysteresis[0][0].span == s->hysteresis[1][0].span;
+        if (s->hysteresis[kind])
+            stimulus.hysteresis[kind] =
+                imki_sensor_row(s, IMKI_SENSOR_HYSTERESIS + (s->same_hysteresis ? 0 : kind));
     }
+    for (int kind = 0; kind < 2; kind++)
+        s->exposure[kind] = imki_expose(kind, &stimulus);
 }
 
 /* What differs between the sensors of a channel. */
@@ -174,6 +196,9 @@ static imk_status start_channels(imk_sensor *s, const imk_model *model, imki_par
                 return status;
             start_numbers(s, axis, c, i);
         }
+    for (size_t c = 0; c < s->channels; c++)
+        s->quantizer[c] =
+            imki_quantizer_of(s->channel[c].quantization.lsb, s->channel[c].quantization.dt);
     return IMK_OK;
 }
 
@@ -204,7 +229,7 @@ imk_status imk_sensor_start(const imk_model *model, const imk_sensor_settings *s
     made->run = settings->run;
     made->drops = model->timing.drops.value;
     made->interval = 1.0 / settings->rate;
-    start_warm_up_and_hysteresis(made, model, settings);
+    start_exposure(made, model, settings);
     status = start_responses(made, model, error);
     if (status == IMK_OK)
         status = start_channels(made, model, &parts, error);

@@ -19,7 +19,23 @@ typedef enum imki_sensor_number {
     IMKI_SENSOR_NUMBERS
 } imki_sensor_number;
 
+/* Sensors that are stepped together: a chunk of samples for the distortion. */
+enum { IMKI_GROUP = IMKI_CHUNK };
+
+/* What a group of sensors is exposed to, a row of places for each quantity. */
+enum {
+    IMKI_SENSOR_FORCE = 3,
+    IMKI_SENSOR_ACCELERATION = 6,
+    IMKI_SENSOR_TEMPERATURE = 9,
+    IMKI_SENSOR_TEMPERATURE_RATE,
+    IMKI_SENSOR_WARM_UP,
+    IMKI_SENSOR_HYSTERESIS = IMKI_SENSOR_WARM_UP + 2,
+    IMKI_SENSOR_ROWS = IMKI_SENSOR_HYSTERESIS + 2
+};
+
 struct imk_sensor {
+    double *rows;              /* IMKI_SENSOR_ROWS */
+    imki_exposure exposure[2]; /* of gyros and accelerometers to these rows */
     imk_random random;
     uint32_t run;
     double drops, interval;
@@ -27,20 +43,18 @@ struct imk_sensor {
     size_t count, places;        /* sensors; room for them in arrays */
     size_t channels, of_kind[2]; /* gyro axes, accelerometer axes */
     bool temperature;            /* is part of the truth */
-    bool warm_up_present[2], hysteresis_present[2];
-    double warm_up_time[2], warm_up_block[2]; /* the second of this block */
-    bool hysteresis_shared;                   /* all have seen the same: that of sensor 0 */
-    imk_hysteresis *hysteresis[2];            /* of each sensor */
-    imk_axis_response *axis;                  /* of each channel, the same for all sensors */
-    imki_channel *channel;                    /* [sensor][channel] */
-    double *number;                           /* [imki_sensor_number][channel][place] */
+    double warm_up_time[2], warm_up_block[2];
+    bool same_warm_up, same_hysteresis; /* of gyros and accelerometers: made once */
+    bool shared_hysteresis;             /* all have seen the same: that of sensor 0 */
+    imk_hysteresis *hysteresis[2];      /* of each sensor; NULL: none */
+    imk_axis_response *axis;            /* of each channel, the same for all sensors */
+    imki_quantizer *quantizer;          /* of each channel */
+    imki_channel *channel;              /* [sensor][channel] */
+    double *number;                     /* [imki_sensor_number][channel][place] */
     /* Groups of sensors one after another, each [channel][sample of the block][place]. */
     double *noise;
     double *block; /* scratch: IMKI_INTERLEAVED blocks */
 };
-
-/* Sensors that are stepped together: a chunk of samples for the distortion. */
-enum { IMKI_GROUP = IMKI_CHUNK };
 
 /* Room in arrays of numbers: a single sensor is a pair of samples. */
 static inline size_t imki_sensor_places(size_t count)
@@ -67,5 +81,32 @@ static inline double *imki_sensor_numbers(const imk_sensor *s, imki_sensor_numbe
 {
     return s->number + ((size_t)which * s->channels + channel) * s->places;
 }
+
+/* Places of a row of what a group is exposed to. */
+static inline size_t imki_row_places(size_t count)
+{
+    return count == 1 ? 2 : (size_t)IMKI_GROUP;
+}
+
+static inline double *imki_sensor_row(const imk_sensor *s, int row)
+{
+    return s->rows + (size_t)row * imki_row_places(s->count);
+}
+
+/* The output stage of a channel of some sensors: a response becomes a reading. */
+typedef struct imki_output {
+    const imki_channel *form; /* whose numbers are those of all */
+    imki_quantizer quantizer;
+    bool end;                                                 /* of a segment */
+    double *filter, *filter_speed, *residual, *sum, *counted; /* of each sensor */
+    const double *noise;
+} imki_output;
+
+/* @param count  <= IMKI_GROUP
+ * @return true if all readings are finite */
+bool imki_sensor_output(imk_kernel kernel, const imki_output *output, size_t count, double *y);
+bool imki_sensor_output_portable(const imki_output *output, size_t count, double *y);
+bool imki_sensor_output_avx2(const imki_output *output, size_t count, double *y);
+bool imki_sensor_output_avx512(const imki_output *output, size_t count, double *y);
 
 #endif

@@ -62,88 +62,61 @@ static void make_noise(imk_sensor *s)
 
 /* ---- truth ---- */
 
-/* What a group of sensors is exposed to. */
-enum {
-    TEMPERATURE = 9,
-    TEMPERATURE_RATE,
-    WARM_UP,
-    HYSTERESIS = WARM_UP + 2,
-    ROWS = HYSTERESIS + 2
-};
-typedef struct exposed {
-    imk_stimulus stimulus;
-    IMKI_ALIGNED double row[ROWS][IMKI_GROUP];
-} exposed;
-
-static const double *repeat(double value, size_t places, double *row)
+static void repeat(double value, size_t places, double *row)
 {
     for (size_t i = 0; i < places; i++)
         row[i] = value;
-    return row;
-}
-
-static size_t places_of(const imk_sensor *s)
-{
-    return s->count == 1 ? s->places : IMKI_GROUP;
 }
 
 /* One truth for all. */
-static void expose_all(const imk_sensor *s, const imk_sensor_truth *truth, exposed *e)
+static void expose_all(imk_sensor *s, const imk_sensor_truth *truth)
 {
-    const size_t places = places_of(s);
+    const size_t places = imki_row_places(s->count);
     for (int i = 0; i < 3; i++) {
-        e->stimulus.angular_rate[i] = repeat(truth->angular_rate[i], places, e->row[i]);
-        e->stimulus.specific_force[i] = repeat(truth->specific_force[i], places, e->row[3 + i]);
-        e->stimulus.angular_acceleration[i] =
-            repeat(truth->angular_acceleration[i], places, e->row[6 + i]);
+        repeat(truth->angular_rate[i], places, imki_sensor_row(s, i));
+        repeat(truth->specific_force[i], places, imki_sensor_row(s, IMKI_SENSOR_FORCE + i));
+        repeat(truth->angular_acceleration[i], places,
+               imki_sensor_row(s, IMKI_SENSOR_ACCELERATION + i));
     }
-    e->stimulus.temperature = repeat(truth->temperature, places, e->row[TEMPERATURE]);
-    e->stimulus.temperature_rate =
-        repeat(truth->temperature_rate, places, e->row[TEMPERATURE_RATE]);
+    repeat(truth->temperature, places, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE));
+    repeat(truth->temperature_rate, places, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE_RATE));
 }
 
-/* Those of a group: where they stand, or a copy if the group is not full. */
-static const double *part_of(const double *truth, size_t first, size_t count, size_t places,
-                             double *row)
+static void take(const double *truth, size_t first, size_t count, double *row)
 {
-    if (!truth || count == places)
-        return truth ? truth + first : NULL;
-    memset(row, 0, places * sizeof *row);
-    memcpy(row, truth + first, count * sizeof *row);
-    return row;
+    if (truth)
+        memcpy(row, truth + first, count * sizeof *row);
+    else
+        memset(row, 0, count * sizeof *row);
 }
 
-static void expose_each(const imk_sensor *s, const imk_stimulus *truth, size_t first, size_t count,
-                        exposed *e)
+/* Those of a group. */
+static void expose_each(imk_sensor *s, const imk_stimulus *truth, size_t first, size_t count)
 {
-    const size_t places = places_of(s);
     for (int i = 0; i < 3; i++) {
-        e->stimulus.angular_rate[i] =
-            part_of(truth->angular_rate[i], first, count, places, e->row[i]);
-        e->stimulus.specific_force[i] =
-            part_of(truth->specific_force[i], first, count, places, e->row[3 + i]);
-        e->stimulus.angular_acceleration[i] =
-            part_of(truth->angular_acceleration[i], first, count, places, e->row[6 + i]);
+        take(truth->angular_rate[i], first, count, imki_sensor_row(s, i));
+        take(truth->specific_force[i], first, count, imki_sensor_row(s, IMKI_SENSOR_FORCE + i));
+        take(truth->angular_acceleration[i], first, count,
+             imki_sensor_row(s, IMKI_SENSOR_ACCELERATION + i));
     }
-    e->stimulus.temperature =
-        part_of(truth->temperature, first, count, places, e->row[TEMPERATURE]);
-    e->stimulus.temperature_rate =
-        part_of(truth->temperature_rate, first, count, places, e->row[TEMPERATURE_RATE]);
+    if (!s->temperature)
+        return;
+    take(truth->temperature, first, count, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE));
+    take(truth->temperature_rate, first, count, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE_RATE));
 }
 
 /* Power-on is the same moment for all. */
-static void expose_to_warm_up(imk_sensor *s, exposed *e)
+static void expose_to_warm_up(imk_sensor *s)
 {
     const size_t within = (size_t)(s->next % IMK_NOISE_BLOCK);
     for (int kind = 0; kind < 2; kind++) {
         const double time = s->warm_up_time[kind];
-        e->stimulus.warm_up[kind] = NULL;
-        if (!s->warm_up_present[kind])
+        if (!s->exposure[kind].warm_up || (kind == IMK_ACCEL && s->same_warm_up))
             continue;
         if (within == 0)
             s->warm_up_block[kind] = imki_warm_up_block(s->next, 1, s->interval, time);
-        const double now = s->warm_up_block[kind] * imki_warm_up_within(within, s->interval, time);
-        e->stimulus.warm_up[kind] = repeat(now, places_of(s), e->row[WARM_UP + kind]);
+        repeat(s->warm_up_block[kind] * imki_warm_up_within(within, s->interval, time),
+               imki_row_places(s->count), imki_sensor_row(s, IMKI_SENSOR_WARM_UP + kind));
     }
 }
 
@@ -156,96 +129,76 @@ static double next_hysteresis(imk_hysteresis *hysteresis, double temperature)
 }
 
 /* As long as all have seen the same temperatures, there is one state. */
-static void expose_to_hysteresis(imk_sensor *s, bool shared, size_t first, size_t count, exposed *e)
+static void expose_to_hysteresis(imk_sensor *s, size_t first, size_t count)
 {
-    const double *temperature = e->stimulus.temperature;
+    const double *temperature = imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE);
     for (int kind = 0; kind < 2; kind++) {
         imk_hysteresis *hysteresis = s->hysteresis[kind];
-        double *row = e->row[HYSTERESIS + kind];
-        e->stimulus.hysteresis[kind] = s->hysteresis_present[kind] ? row : NULL;
-        if (!s->hysteresis_present[kind])
+        double *row = imki_sensor_row(s, IMKI_SENSOR_HYSTERESIS + kind);
+        if (!hysteresis || (kind == IMK_ACCEL && s->same_hysteresis))
             continue;
-        if (shared && s->hysteresis_shared) {
-            if (first == 0)
-                repeat(next_hysteresis(hysteresis, temperature[0]), places_of(s), row);
-            continue;
-        }
-        for (size_t i = 0; i < count; i++)
+        if (s->shared_hysteresis && first == 0)
+            repeat(next_hysteresis(hysteresis, temperature[0]), imki_row_places(s->count), row);
+        for (size_t i = 0; i < count && !s->shared_hysteresis; i++)
             row[i] = next_hysteresis(&hysteresis[first + i], temperature[i]);
     }
 }
 
 static void spread_hysteresis(imk_sensor *s)
 {
-    for (int kind = 0; kind < 2 && s->hysteresis_shared; kind++)
-        for (size_t i = 1; i < s->count && s->hysteresis_present[kind]; i++)
+    for (int kind = 0; kind < 2 && s->shared_hysteresis; kind++)
+        for (size_t i = 1; i < s->count && s->hysteresis[kind]; i++)
             s->hysteresis[kind][i] = s->hysteresis[kind][0];
-    s->hysteresis_shared = false;
+    s->shared_hysteresis = s->count == 1;
 }
 
 /* ---- a step ---- */
 
-/* The response of one channel of a group becomes its readings. @return true if all are finite */
-static bool finish(imk_sensor *s, size_t channel, size_t first, size_t count, const double *noise,
-                   double *restrict y)
+/* What is needed of the noise of the next group, sooner than the processor sees. */
+static void fetch_noise(const imk_sensor *s, size_t first, size_t within)
 {
-    const imki_channel *form = &s->channel[channel];
-    if (form->band_limit.present) {
-        double *restrict x = imki_sensor_numbers(s, IMKI_SENSOR_FILTER, channel) + first;
-        double *restrict v = imki_sensor_numbers(s, IMKI_SENSOR_FILTER_SPEED, channel) + first;
-        for (size_t i = 0; i < count; i++) {
-            const bool started = x[i] - x[i] == 0.0;
-            x[i] = started ? x[i] : y[i];
-            v[i] = started ? v[i] : 0.0;
-            y[i] = imki_band_limited(&form->band_limit, y[i], &x[i], &v[i]);
-        }
-    }
-    for (size_t i = 0; i < count; i++)
-        y[i] += noise[i];
-    if (imki_saturates(form))
-        for (size_t i = 0; i < count; i++)
-            y[i] = imki_saturated(y[i], form->dead_band, imki_end_of_range(form));
-    if (form->quantization.lsb > 0.0) {
-        const imki_quantizer quantizer =
-            imki_quantizer_of(form->quantization.lsb, form->quantization.dt);
-        const bool end = (s->next + 1) % IMK_NOISE_STEPS == 0;
-        double *restrict residual = imki_sensor_numbers(s, IMKI_SENSOR_RESIDUAL, channel) + first;
-        double *restrict sum = imki_sensor_numbers(s, IMKI_SENSOR_SUM, channel) + first;
-        double *restrict counted = imki_sensor_numbers(s, IMKI_SENSOR_COUNTED, channel) + first;
-        for (size_t i = 0; i < count; i++)
-            y[i] = imki_quantized(&quantizer, end, y[i], &residual[i], &sum[i], &counted[i]);
-    }
-    if (form->resolution > 0.0)
-        for (size_t i = 0; i < count; i++)
-            y[i] = imki_to_resolution(form->resolution, y[i]);
-    if (form->sensitivity != 0.0)
-        for (size_t i = 0; i < count; i++)
-            y[i] = imki_to_counts(form, y[i]);
-    int64_t lost = 0;
-    for (size_t i = 0; i < count; i++)
-        lost |= y[i] - y[i] == 0.0 ? 0 : 1;
-    return lost == 0;
+    size_t places;
+    if (first >= s->count)
+        return;
+    const double *noise = imki_group_noise(s, first, &places) + within * places;
+    for (size_t c = 0; c < s->channels; c++)
+        for (size_t i = 0; i < places; i += 8)
+            __builtin_prefetch(noise + c * IMK_NOISE_BLOCK * places + i);
 }
 
-static bool step_group(imk_sensor *s, const imk_stimulus *stimulus, size_t first, size_t count,
-                       double *readings)
+static bool step_group(imk_sensor *s, size_t first, size_t count, double *readings)
 {
-    IMKI_ALIGNED double y[IMKI_GROUP];
+    IMKI_ALIGNED double part[IMKI_GROUP];
     size_t places;
     const size_t within = (size_t)(s->next % IMK_NOISE_BLOCK);
     const double *noise = imki_group_noise(s, first, &places) + within * places;
     bool finite = true;
+    fetch_noise(s, first + IMKI_GROUP, within);
     for (size_t kind = 0, c = 0; kind < 2; kind++) {
-        imki_exposure exposure = imki_expose((int)kind, stimulus);
+        imki_exposure *exposure = &s->exposure[kind];
         for (const size_t end = c + s->of_kind[kind]; c < end; c++) {
-            exposure.bias = imki_sensor_numbers(s, IMKI_SENSOR_BIAS, c) + first;
-            exposure.scale = imki_sensor_numbers(s, IMKI_SENSOR_SCALE, c) + first;
+            double *place = readings + c * s->count + first, *y = count < IMKI_GROUP ? part : place;
+            double *numbers[IMKI_SENSOR_NUMBERS];
+            for (int i = 0; i < IMKI_SENSOR_NUMBERS; i++)
+                numbers[i] = imki_sensor_numbers(s, (imki_sensor_number)i, c) + first;
+            exposure->bias = numbers[IMKI_SENSOR_BIAS];
+            exposure->scale = numbers[IMKI_SENSOR_SCALE];
             if (s->count == 1)
-                imki_distort_pair(&s->axis[c], &exposure, y);
+                imki_distort_pair(&s->axis[c], exposure, y);
             else
-                imki_distort_chunks(s->random.kernel, &s->axis[c], &exposure, 1, y);
-            finite &= finish(s, c, first, count, noise + c * IMK_NOISE_BLOCK * places, y);
-            memcpy(readings + c * s->count + first, y, count * sizeof *y);
+                imki_distort_chunks(s->random.kernel, &s->axis[c], exposure, 1, y);
+            const imki_output output = {&s->channel[c],
+                                        s->quantizer[c],
+                                        (s->next + 1) % IMK_NOISE_STEPS == 0,
+                                        numbers[IMKI_SENSOR_FILTER],
+                                        numbers[IMKI_SENSOR_FILTER_SPEED],
+                                        numbers[IMKI_SENSOR_RESIDUAL],
+                                        numbers[IMKI_SENSOR_SUM],
+                                        numbers[IMKI_SENSOR_COUNTED],
+                                        noise + c * IMK_NOISE_BLOCK * places};
+            finite &= imki_sensor_output(s->random.kernel, &output, count, y);
+            if (y == part)
+                memcpy(place, part, count * sizeof *part);
         }
     }
     return finite;
@@ -255,26 +208,20 @@ static bool step_group(imk_sensor *s, const imk_stimulus *stimulus, size_t first
 static imk_status step(imk_sensor *s, const imk_sensor_truth *all, const imk_stimulus *each,
                        double *readings)
 {
-    exposed e;
     bool finite = true;
     if (s->next % IMK_NOISE_BLOCK == 0)
         make_noise(s);
-    expose_to_warm_up(s, &e);
+    expose_to_warm_up(s);
     if (all)
-        expose_all(s, all, &e);
+        expose_all(s, all);
     else
         spread_hysteresis(s);
     for (size_t first = 0; first < s->count; first += IMKI_GROUP) {
         const size_t left = s->count - first, count = left < IMKI_GROUP ? left : IMKI_GROUP;
         if (each)
-            expose_each(s, each, first, count, &e);
-        if (s->temperature) {
-            expose_to_hysteresis(s, all != NULL, first, count, &e);
-        } else {
-            e.stimulus.temperature = e.stimulus.temperature_rate = NULL;
-            e.stimulus.hysteresis[0] = e.stimulus.hysteresis[1] = NULL;
-        }
-        finite &= step_group(s, &e.stimulus, first, count, readings);
+            expose_each(s, each, first, count);
+        expose_to_hysteresis(s, first, count);
+        finite &= step_group(s, first, count, readings);
     }
     s->next++;
     return finite ? IMK_OK : IMK_ERROR_NOT_FINITE;

@@ -137,22 +137,27 @@ static void test_completed(void **state)
     (void)state;
     imk_findings findings = {.count = 0};
     double dipole[3];
-    settings.rows = 0;
+    const double whole_motion = (double)NAN;
     model.mag = model.accel;
     model.gyro.bias.temperature_rate.value[0] = 1;
-    CHECK_OK(imk_simulate_log_complete(&model, 2.0, &settings, &findings, &error));
+    CHECK_OK(imk_simulate_log_complete(&model, whole_motion, 2.0, &settings, &findings, &error));
     imk_dipole_field(settings.simulation.latitude, dipole);
     assert_memory_equal(settings.simulation.field, dipole, sizeof dipole);
     assert_int_equal(settings.rows, 201);
     assert_int_equal(findings.count, 1);
     assert_string_equal(imk_finding_code(&findings.item[0]), "temperature_unknown");
-    settings.rows = 0;
-    assert_int_equal(imk_simulate_log_complete(&model, 1e14, &settings, &findings, &error),
-                     IMK_ERROR_RANGE);
-    CHECK_OK(imk_simulate_log_complete(&model, HUGE_VAL, &settings, &findings, &error));
+    CHECK_OK(imk_simulate_log_complete(&model, 1.5, 2.0, &settings, &findings, &error));
+    assert_int_equal(settings.rows, 150);
+    CHECK_OK(
+        imk_simulate_log_complete(&model, whole_motion, HUGE_VAL, &settings, &findings, &error));
     assert_int_equal(settings.rows, 0);
+    const double wrong[][2] = {{whole_motion, 1e14}, {3, 2}, {0, 2}, {-1, 2}, {1e14, HUGE_VAL}};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
+        assert_int_equal(imk_simulate_log_complete(&model, wrong[i][0], wrong[i][1], &settings,
+                                                   &findings, &error),
+                         IMK_ERROR_RANGE);
     settings.simulation.rate = 0;
-    assert_int_equal(imk_simulate_log_complete(&model, 1, &settings, &findings, &error),
+    assert_int_equal(imk_simulate_log_complete(&model, 1, 1, &settings, &findings, &error),
                      IMK_ERROR_RANGE);
 }
 

@@ -258,6 +258,37 @@ static void test_like_simulation(void **state)
     }
 }
 
+/* At rest the simulator computes the response once, where only the warm-up changes: the bytes are
+ * those of a step, too. A perfect unit says what is true. */
+static void test_at_rest(void **state)
+{
+    (void)state;
+    const imk_model model = full_model();
+    imk_model perfect;
+    imk_model_default(&perfect);
+    imk_sensor_settings settings = settings_of(1, 3);
+    imk_simulation simulation = imk_simulation_default();
+    settings.temperature = false;
+    simulation.rate = rate;
+    simulation.seed = 7;
+    simulation.run = 3;
+    simulation.roll = 0.3;
+    double *true_row = simulate_rows(&perfect, &simulation, 1), readings[6];
+    double *log = simulate_rows(&model, &simulation, ROWS);
+    void *memory;
+    imk_sensor *sensor = start_sensor(&model, &settings, &memory);
+    imk_sensor_truth now = {.temperature = (double)NAN}; /* not read */
+    memcpy(now.angular_rate, true_row, sizeof now.angular_rate);
+    memcpy(now.specific_force, true_row + 3, sizeof now.specific_force);
+    for (size_t k = 0; k < ROWS; k++) {
+        CHECK_OK(imk_sensor_step(sensor, &now, readings));
+        compare(readings, 6, 1, 0, log, k);
+    }
+    free(memory);
+    free(log);
+    free(true_row);
+}
+
 /* Each of many is the one with its run number, whether all see one motion or each its own, and in
  * turns. Numbers of sensors that fill a group, and that do not. */
 static void test_side_by_side(void **state)
@@ -499,10 +530,15 @@ static void test_memory_and_null(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_like_simulation), cmocka_unit_test(test_side_by_side),
-        cmocka_unit_test(test_own_motions),     cmocka_unit_test(test_drops),
-        cmocka_unit_test(test_not_finite),      cmocka_unit_test(test_not_finite_leaves_nothing),
-        cmocka_unit_test(test_refusals),        cmocka_unit_test(test_memory_and_null),
+        cmocka_unit_test(test_like_simulation),
+        cmocka_unit_test(test_at_rest),
+        cmocka_unit_test(test_side_by_side),
+        cmocka_unit_test(test_own_motions),
+        cmocka_unit_test(test_drops),
+        cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_not_finite_leaves_nothing),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_memory_and_null),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -59,7 +59,33 @@ static void find_vibration(const imk_simulation *s, imk_findings *findings)
                   IMKI_NUMBERS(parts, IMK_SUBSTEPS_MAX, ceil(s->rate * parts / IMK_SUBSTEPS_MAX)));
 }
 
-imk_status imk_simulate_log_complete(const imk_model *model, double length,
+/* A motion without a duration is simulated to its end, the last row included. */
+static imk_status choose_rows(double duration, double length, imk_simulate_log_settings *settings,
+                              imk_error *error)
+{
+    const imk_recorded_motion *recorded = settings->simulation.motion.recorded;
+    const double rate = settings->simulation.rate;
+    if (isnan(duration)) {
+        if (!recorded && length < HUGE_VAL && !(length * rate < 1e15))
+            return imki_refuse(error, IMK_ERROR_RANGE, "duration", length, 1e15 / rate,
+                               "at most 1e15 rows: state a duration, or a lower rate");
+        settings->rows = recorded            ? recorded->count
+                         : length < HUGE_VAL ? (uint64_t)floor(length * rate + 1e-6) + 1
+                                             : 0;
+        return IMK_OK;
+    }
+    if (!(rate * duration >= 0.5 && rate * duration < 1e15))
+        return imki_refuse(error, IMK_ERROR_RANGE, "duration", duration,
+                           rate * duration < 1 ? 0.5 / rate : 1e15 / rate, "1 to 1e15 rows");
+    if (duration > length + 1.5 / rate)
+        return imki_refuse(error, IMK_ERROR_RANGE, "duration", duration, length,
+                           "at most the length of the motion, unless a script ends with `then: "
+                           "hold`");
+    settings->rows = (uint64_t)llround(duration * rate);
+    return IMK_OK;
+}
+
+imk_status imk_simulate_log_complete(const imk_model *model, double duration, double length,
                                      imk_simulate_log_settings *settings, imk_findings *findings,
                                      imk_error *error)
 {
@@ -68,14 +94,9 @@ imk_status imk_simulate_log_complete(const imk_model *model, double length,
     if (!(s->rate >= 1e-9 && s->rate <= 1e12))
         return imki_refuse(error, IMK_ERROR_RANGE, "rate", s->rate, s->rate > 1 ? 1e12 : 1e-9,
                            "a rate of 1e-9 Hz to 1e12 Hz");
-    if (settings->rows == 0 && s->motion.recorded) {
-        settings->rows = s->motion.recorded->count;
-    } else if (settings->rows == 0 && length < HUGE_VAL) {
-        if (!(length * s->rate < 1e15))
-            return imki_refuse(error, IMK_ERROR_RANGE, "rows", length * s->rate, 1e15,
-                               "at most 1e15 rows: state a duration, or a lower rate");
-        settings->rows = (uint64_t)floor(length * s->rate + 1e-6) + 1;
-    }
+    const imk_status status = choose_rows(duration, length, settings, error);
+    if (status != IMK_OK)
+        return status;
     find_temperature(model, s, findings);
     choose_field(model, s, findings);
     find_vibration(s, findings);
