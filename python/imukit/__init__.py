@@ -10,7 +10,8 @@ from ._core import version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
 from ._estimates import Estimate
 from ._grade import GradeResult, grade
-from ._identify import IdentifyResult, identify
+from ._identify import (IdentifyResult, RecordPlan, identify, identify_curve, identify_devices,
+                        identify_runs, plan_record)
 from ._info import InfoResult, info
 from ._log import Log, read_log
 from ._model import Device, Model, devices
@@ -42,6 +43,7 @@ __all__ = [
     "Log",
     "Model",
     "Motion",
+    "RecordPlan",
     "Result",
     "Sensor",
     "SpectrumCurve",
@@ -53,8 +55,12 @@ __all__ = [
     "drift",
     "grade",
     "identify",
+    "identify_curve",
+    "identify_devices",
+    "identify_runs",
     "info",
     "normal_gravity",
+    "plan_record",
     "read_log",
     "simulate",
     "simulate_blocks",
