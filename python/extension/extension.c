@@ -2,9 +2,9 @@
 /* The module imukit._core. */
 #include "extension.h"
 
-static PyMethodDef *const functions[] = {record_functions, allan_functions, identify_functions,
-                                         unit_functions,   model_functions, drift_functions,
-                                         grade_functions};
+static PyMethodDef *const functions[] = {record_functions, allan_functions,   identify_functions,
+                                         unit_functions,   model_functions,   drift_functions,
+                                         grade_functions,  navigate_functions};
 
 static struct PyModuleDef definition = {
     PyModuleDef_HEAD_INIT,

@@ -163,6 +163,6 @@ bool add_identify(PyObject *module);
 /** Functions of the module, by their files; each ends with a row of zeros. */
 extern PyMethodDef record_functions[], allan_functions[], identify_functions[], unit_functions[],
     model_functions[];
-extern PyMethodDef drift_functions[], grade_functions[];
+extern PyMethodDef drift_functions[], grade_functions[], navigate_functions[];
 
 #endif

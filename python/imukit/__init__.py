@@ -12,9 +12,11 @@ from ._grade import GradeResult, grade
 from ._identify import IdentifyResult, identify
 from ._log import Log, read_log
 from ._model import Device, Model, devices
+from ._navigate import Innovations, NavigateResult, Track, navigate
 from ._results import DataWarning, Fields, Finding, Result
 
 __all__ = ["AllanCurve", "AllanResult", "DataWarning", "Error", "Fields", "FileError", "Finding",
            "IdentifyResult", "Log", "Device", "Model", "Result", "devices", "allan", "convert_unit", "identify",
            "normal_gravity", "read_log", "DriftGrowth", "DriftMoments", "DriftResult", "DriftRuns",
-           "DriftShare", "drift", "GradeResult", "grade"]
+           "DriftShare", "drift", "GradeResult", "grade",
+           "Innovations", "NavigateResult", "Track", "navigate"]
