@@ -5,8 +5,7 @@ Numbers are in SI units: rad/s, m/s^2, s, K, T. Wherever a number is an argument
 may stand for it: "0.1 deg/s".
 """
 from ._allan import AllanCurve, AllanResult, allan
-from ._core import Error, FileError, convert_unit, normal_gravity
-from ._core import version as __version__
+from ._core import Error, FileError, convert_unit, normal_gravity, version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
 from ._estimates import Estimate
 from ._grade import GradeResult, grade
@@ -16,6 +15,7 @@ from ._info import InfoResult, info
 from ._log import Log, read_log
 from ._model import Device, Model, devices
 from ._motion import Motion
+from ._navigate import Innovations, NavigateResult, Track, navigate
 from ._results import DataWarning, Fields, Finding, Result
 from ._sensor import Sensor
 from ._simulate import Blocks, simulate, simulate_blocks, simulate_runs, simulate_truth
@@ -40,15 +40,18 @@ __all__ = [
     "GradeResult",
     "IdentifyResult",
     "InfoResult",
+    "Innovations",
     "Log",
     "Model",
     "Motion",
+    "NavigateResult",
     "RecordPlan",
     "Result",
     "Sensor",
     "SpectrumCurve",
     "SpectrumLine",
     "SpectrumResult",
+    "Track",
     "allan",
     "convert_unit",
     "devices",
@@ -59,6 +62,7 @@ __all__ = [
     "identify_devices",
     "identify_runs",
     "info",
+    "navigate",
     "normal_gravity",
     "plan_record",
     "read_log",
