@@ -5,19 +5,6 @@
 #include "imukit/earth.h"
 #include "imukit/units.h"
 
-static bool unit_argument(PyObject *object, imk_unit *unit)
-{
-    Py_ssize_t size;
-    imk_error error;
-    const char *text = PyUnicode_AsUTF8AndSize(object, &size);
-    if (!text)
-        return false;
-    if (imk_unit_parse(text, text + size, unit, &error) == IMK_OK)
-        return true;
-    raise_error(&error, NULL);
-    return false;
-}
-
 static bool arguments(const char *name, Py_ssize_t count, Py_ssize_t due)
 {
     if (count == due)
@@ -33,7 +20,7 @@ static PyObject *convert_unit(PyObject *module, PyObject *const *args, Py_ssize_
     if (!arguments("convert_unit", count, 3))
         return NULL;
     const double value = PyFloat_AsDouble(args[0]);
-    if (PyErr_Occurred() || !unit_argument(args[1], &from) || !unit_argument(args[2], &to))
+    if (PyErr_Occurred() || !unit_read(args[1], NULL, &from) || !unit_read(args[2], NULL, &to))
         return NULL;
     if (!imk_dimension_equal(from.dimension, to.dimension)) {
         imk_error error;
@@ -67,7 +54,37 @@ static PyObject *quantity(PyObject *module, PyObject *const *args, Py_ssize_t co
     return unit && quantity_read(args[1], name, unit, &value) ? PyFloat_FromDouble(value) : NULL;
 }
 
+enum { NUMBERS_MAX = 16 };
+
+/* quantities(name, text, unit) -> the numbers of a text with one unit, and their 1 sigma */
+static PyObject *quantities(PyObject *module, PyObject *const *args, Py_ssize_t count)
+{
+    double value[NUMBERS_MAX], sigma[NUMBERS_MAX] = {0};
+    size_t found = 0;
+    Py_ssize_t size;
+    imk_error error;
+    (void)module;
+    if (!arguments("quantities", count, 3))
+        return NULL;
+    const char *name = PyUnicode_AsUTF8AndSize(args[0], NULL);
+    const char *unit = name ? PyUnicode_AsUTF8AndSize(args[2], NULL) : NULL;
+    const char *text = unit ? PyUnicode_AsUTF8AndSize(args[1], &size) : NULL;
+    if (!text)
+        return NULL;
+    if (imk_quantity_parse(text, text + size, imk_unit_of(unit).dimension, NUMBERS_MAX, value,
+                           sigma, &found, NULL, &error) != IMK_OK)
+        return raise_error(&error, name);
+    PyObject *values = PyTuple_New((Py_ssize_t)found), *sigmas = PyTuple_New((Py_ssize_t)found);
+    for (size_t k = 0; k < found && values && sigmas; k++) {
+        PyTuple_SetItem(values, (Py_ssize_t)k, PyFloat_FromDouble(value[k]));
+        PyTuple_SetItem(sigmas, (Py_ssize_t)k, PyFloat_FromDouble(sigma[k]));
+    }
+    return values && sigmas ? Py_BuildValue("(NN)", values, sigmas) : NULL;
+}
+
 PyMethodDef unit_functions[] = {
+    {"quantities", (PyCFunction)(void (*)(void))quantities, METH_FASTCALL,
+     "quantities(name, text, unit): numbers of a text with one unit, and their 1 sigma."},
     {"quantity", (PyCFunction)(void (*)(void))quantity, METH_FASTCALL,
      "quantity(name, value, unit): a number in SI units, or a text with a unit."},
     {"convert_unit", (PyCFunction)(void (*)(void))convert_unit, METH_FASTCALL,

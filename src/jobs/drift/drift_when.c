@@ -102,6 +102,8 @@ imk_status imk_drift_times_ask(const imk_drift_when *when, const imk_drift_setti
                 .settings = settings,
                 .want = want && want->asked ? want : NULL,
                 .length = when->motion > 0 ? when->motion : HUGE_VAL};
+    if (!(settings->rate > 0 && isfinite(settings->rate)))
+        return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, 0, "a rate above 0 Hz");
     imk_status status = choose(&a, error);
     if (status == IMK_OK)
         status =
