@@ -5,6 +5,7 @@ Numbers are in SI units: rad/s, m/s^2, s, K, T. Wherever a number is an argument
 may stand for it: "0.1 deg/s".
 """
 from ._allan import AllanCurve, AllanResult, allan
+from ._calibrate import CalibrateResult, Parameter, PoseResidual, calibrate
 from ._core import Error, FileError, convert_unit, normal_gravity
 from ._core import version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
@@ -25,6 +26,7 @@ __all__ = [
     "AllanCurve",
     "AllanResult",
     "Blocks",
+    "CalibrateResult",
     "DataWarning",
     "Device",
     "DriftGrowth",
@@ -43,6 +45,8 @@ __all__ = [
     "Log",
     "Model",
     "Motion",
+    "Parameter",
+    "PoseResidual",
     "RecordPlan",
     "Result",
     "Sensor",
@@ -50,6 +54,7 @@ __all__ = [
     "SpectrumLine",
     "SpectrumResult",
     "allan",
+    "calibrate",
     "convert_unit",
     "devices",
     "drift",
