@@ -91,9 +91,11 @@ class CalibrateResult(Result):
     @property
     def correlations(self) -> _arrays.Array:
         """Matrix of the correlations of the parameters, in the order of `estimates`."""
-        rows = self._data["result"]["correlation"] or []
-        return _arrays.matrix(_arrays.of_numbers(x for row in rows for x in row), len(rows),
-                              len(rows))
+        rows = self._data["result"]["correlation"] or []  # of the lower triangle
+        count = len(rows)
+        numbers = _arrays.of_numbers(rows[max(i, k)][min(i, k)]
+                                     for i in range(count) for k in range(count))
+        return _arrays.matrix(numbers, count, count) if count else numbers
 
     @property
     def residuals(self) -> tuple[PoseResidual, ...]:
