@@ -27,6 +27,8 @@
 /** Raise imukit.Error, or MemoryError, FileNotFoundError's kind imukit.FileError, with the message
  *  of an error. @param source  name of the file that it is about; NULL: none. @return NULL */
 PyObject *raise_error(const imk_error *error, const char *source);
+/** The same with another message. @return NULL */
+PyObject *raise_message(const imk_error *error, const char *message);
 /** Raise what a job failed with: its finding that says why, else the error. @return NULL */
 PyObject *raise_failure(const imk_findings *findings, const imk_error *error, const char *record,
                         const char *model);
@@ -155,6 +157,8 @@ typedef struct model_object {
     PyObject_HEAD imk_model model;
     imk_document *document; /* NULL: none */
 } model_object;
+/** Is it a model? */
+bool is_model(PyObject *object);
 /** The model of an argument; NULL with an exception. It may change when the lock is let go: take a
  *  copy for work without it. */
 model_object *model_of(PyObject *object);
@@ -166,6 +170,8 @@ bool add_model(PyObject *module);
 
 /** Add the type of sensors that are stepped to the module. */
 bool add_sensor(PyObject *module);
+/** Add the constants of calibration to the module. */
+bool add_calibrate(PyObject *module);
 /** Add the constants of identification to the module. */
 bool add_identify(PyObject *module);
 
@@ -174,6 +180,7 @@ bool add_simulate(PyObject *module);
 
 /** Functions of the module, by their files; each ends with a row of zeros. */
 extern PyMethodDef allan_functions[];
+extern PyMethodDef calibrate_functions[];
 extern PyMethodDef drift_functions[];
 extern PyMethodDef grade_functions[];
 extern PyMethodDef identify_functions[];

@@ -5,6 +5,7 @@ Numbers are in SI units: rad/s, m/s^2, s, K, T. Wherever a number is an argument
 may stand for it: "0.1 deg/s".
 """
 from ._allan import AllanCurve, AllanResult, allan
+from ._calibrate import CalibrateResult, Parameter, PoseResidual, calibrate
 from ._core import Error, FileError, convert_unit, normal_gravity, version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
 from ._estimates import Estimate
@@ -25,6 +26,7 @@ __all__ = [
     "AllanCurve",
     "AllanResult",
     "Blocks",
+    "CalibrateResult",
     "DataWarning",
     "Device",
     "DriftGrowth",
@@ -45,6 +47,8 @@ __all__ = [
     "Model",
     "Motion",
     "NavigateResult",
+    "Parameter",
+    "PoseResidual",
     "RecordPlan",
     "Result",
     "Sensor",
@@ -53,6 +57,7 @@ __all__ = [
     "SpectrumResult",
     "Track",
     "allan",
+    "calibrate",
     "convert_unit",
     "devices",
     "drift",

@@ -12,6 +12,12 @@ SCREEN_SATURATED: int
 SCREEN_WARM_UP: int
 SCREEN_TEMPERATURE: int
 SCREEN_ALL: int
+TERM_NONLINEARITY: int
+TERM_CROSS_PRODUCTS: int
+TERM_G_SENSITIVITY: int
+TERM_G2_SENSITIVITY: int
+TERM_GYRO: int
+procedures: dict[str, bool]
 
 class Error(ValueError):
     code: str
@@ -91,6 +97,11 @@ def info(path: Any, settings: dict[str, Any], full: bool, progress: _Progress,
          /) -> tuple[Result, list[_Finding]]: ...
 def info_record(record: Record, full: bool, progress: _Progress,
                 /) -> tuple[Result, list[_Finding]]: ...
+def calibrate(runs: tuple[Any, ...], names: tuple[str, ...], procedures: tuple[str, ...],
+              settings: dict[str, Any], data_sheet: dict[str, Any],
+              place: tuple[float, float, float] | None, model: Model | None, into: Model | None,
+              motion: str | None, name: str | None, poses: bool, progress: _Progress,
+              /) -> tuple[Result, list[_Finding], str, int]: ...
 def open_model(name: Any) -> Model: ...
 def parse_model(text: str) -> Model: ...
 def convert_unit(value: float, from_unit: str, to_unit: str, /) -> float: ...
