@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# Functions of GNU Octave (docs/matlab.md): build/octave is what users add to their path.
+# Functions of GNU Octave (docs/matlab.md), where its mkoctfile is there, built on request: build/octave
+# is what users add to their path.
 
-find_program(MKOCTFILE mkoctfile REQUIRED)
+find_program(MKOCTFILE mkoctfile)
+mark_as_advanced(MKOCTFILE)
+if(NOT MKOCTFILE)
+  return()
+endif()
 execute_process(COMMAND ${MKOCTFILE} -p OCTINCLUDEDIR OUTPUT_VARIABLE octave_headers
                 OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
-
-# From an archive the linker takes what is missing: the verbs, and neither main() nor how the command
-# speaks (cli/shell/voice.h), which the gateway has functions of its own for.
-add_library(imukit-verbs STATIC EXCLUDE_FROM_ALL $<TARGET_OBJECTS:imukit-command-objects>
-            cli/campaign/campaign_run.c)
-target_include_directories(imukit-verbs PRIVATE cli)
-target_link_libraries(imukit-verbs PUBLIC imukit-io)
 
 file(GLOB gateway_sources CONFIGURE_DEPENDS matlab/*.c)
 file(GLOB octave_functions CONFIGURE_DEPENDS matlab/imukit_*.m)

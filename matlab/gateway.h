@@ -13,15 +13,14 @@
 
 #include <mex.h>
 
-enum { GATEWAY_WORDS_MAX = 256, GATEWAY_TOLD_MAX = 128, GATEWAY_TEXT_SIZE = 4096 };
+enum { GATEWAY_WORDS_MAX = 256, GATEWAY_WARNINGS_MAX = 128, GATEWAY_TEXT_SIZE = 4096 };
 
 #define GATEWAY_LOG "log.npy"
 
-/* A note or a warning of the verb. */
-typedef struct gateway_told {
-    voice_kind kind;
+/* A warning of the verb. */
+typedef struct gateway_warning {
     char code[40], *text;
-} gateway_told;
+} gateway_warning;
 
 /* One call of the gateway. */
 typedef struct gateway_call {
@@ -31,8 +30,8 @@ typedef struct gateway_call {
     char folder[256];              /* of temporary files; "": there is none */
     bool log_due;                  /* the verb writes a log, which is returned */
     bool named_columns;            /* of an array */
-    size_t told_count;
-    gateway_told told[GATEWAY_TOLD_MAX];
+    size_t warning_count;
+    gateway_warning warning[GATEWAY_WARNINGS_MAX];
     char *json, *model;                             /* what the verb made; NULL: nothing */
     char failed_by[40], failure[GATEWAY_TEXT_SIZE]; /* "usage", "failed" or "cancelled"; why */
 } gateway_call;

@@ -21,8 +21,8 @@ void gateway_clear(void)
     gateway_remove_files();
     for (int i = 0; i < call.count; i++)
         free(call.word[i]);
-    for (size_t i = 0; i < call.told_count; i++)
-        free(call.told[i].text);
+    for (size_t i = 0; i < call.warning_count; i++)
+        free(call.warning[i].text);
     free(call.json);
     free(call.model);
     memset(&call, 0, sizeof call);
@@ -69,17 +69,17 @@ static void fail(const char *by, const char *format, ...)
     va_end(arguments);
 }
 
+/* Notes are in the result. */
 void voice_say(voice_kind kind, const char *name, const char *code, const char *text)
 {
     (void)name;
     if (kind == VOICE_FAILURE) {
         fail(code, "%s", text);
-    } else if (call.told_count < GATEWAY_TOLD_MAX) {
-        gateway_told *told = &call.told[call.told_count];
-        told->text = gateway_copy(text);
-        told->kind = kind;
-        snprintf(told->code, sizeof told->code, "%s", code);
-        call.told_count++;
+    } else if (kind == VOICE_WARNING && call.warning_count < GATEWAY_WARNINGS_MAX) {
+        gateway_warning *warning = &call.warning[call.warning_count];
+        warning->text = gateway_copy(text);
+        snprintf(warning->code, sizeof warning->code, "%s", code);
+        call.warning_count++;
     }
 }
 
@@ -102,10 +102,8 @@ void voice_result(const char *text, size_t size)
 
 void voice_aside(const char *text, size_t size)
 {
-    char line[GATEWAY_TEXT_SIZE];
-    const int length = size < sizeof line ? (int)size : (int)sizeof line - 1;
-    snprintf(line, sizeof line, "%.*s", length, text);
-    voice_say(VOICE_NOTE, NULL, "", line);
+    (void)text;
+    (void)size;
 }
 
 void voice_model(const imk_model *model)

@@ -352,8 +352,10 @@ bool gateway_take(int count, const mxArray *const *arguments)
     for (; taken < count; taken += 2)
         if (!take_option(arguments[taken], taken + 1 < count ? arguments[taken + 1] : NULL))
             return false;
+    if (!add_option("json", NULL))
+        return false;
     if (!call->log_due)
-        return add_option("json", NULL);
+        return true;
     char *path = gateway_file(GATEWAY_LOG);
     const bool added = path && add_option("output", path);
     free(path);

@@ -12,8 +12,7 @@ function result = imukit_allan (varargin)
 %
 % R is what jsondecode makes of "imukit allan --json" (docs/json.md): R.result.channels(k) has
 % name, statistic and points, and of each point tau, deviation, lower and upper have value and
-% unit. R.warnings are given as warnings, too, with the identifier imukit:CODE. R.notes are
-% remarks that are none.
+% unit. Warnings in R.findings are given as warnings, too, with the identifier imukit:CODE.
 %
 % Options are those of the command, with _ for -. Numbers are in SI units; a text states its unit:
 %   'statistic'   'oadev' (default), 'adev', 'mdev', 'hdev' ..., or a cell array of them

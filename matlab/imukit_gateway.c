@@ -29,10 +29,10 @@ static void run_verb(void)
     command_line_keep(call->count, call->word);
     const int code = call->verb->run(call->count - 2, call->word + 2);
     command_line_keep(0, NULL);
-    if (code != EXIT_DONE && !call->json)
+    if (!call->json)
         (void)gateway_refuse("imukit %s ended with exit code %d", call->verb->name, code);
-    for (size_t i = 0; i < call->told_count; i++)
-        gateway_without_folder(call->told[i].text);
+    for (size_t i = 0; i < call->warning_count; i++)
+        gateway_without_folder(call->warning[i].text);
     gateway_without_folder(call->failure);
     if (call->json)
         gateway_without_folder(call->json);
@@ -54,25 +54,11 @@ static void end_failed(void)
 static void warn(void)
 {
     const gateway_call *call = gateway_now();
-    for (size_t i = 0; i < call->told_count; i++) {
+    for (size_t i = 0; i < call->warning_count; i++) {
         char id[64];
-        snprintf(id, sizeof id, "imukit:%s", call->told[i].code);
-        if (call->told[i].kind == VOICE_WARNING)
-            mexWarnMsgIdAndTxt(id, "%s", call->told[i].text);
+        snprintf(id, sizeof id, "imukit:%s", call->warning[i].code);
+        mexWarnMsgIdAndTxt(id, "%s", call->warning[i].text);
     }
-}
-
-static mxArray *notes(void)
-{
-    const gateway_call *call = gateway_now();
-    size_t count = 0, at = 0;
-    for (size_t i = 0; i < call->told_count; i++)
-        count += call->told[i].kind == VOICE_NOTE;
-    mxArray *cell = mxCreateCellMatrix(count, count > 0);
-    for (size_t i = 0; i < call->told_count; i++)
-        if (call->told[i].kind == VOICE_NOTE)
-            mxSetCell(cell, at++, mxCreateString(call->told[i].text));
-    return cell;
 }
 
 static void set(mxArray *result, const char *name, mxArray *value)
@@ -94,15 +80,14 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[])
     if (!call->failed_by[0] && call->log_due)
         (void)gateway_read_log(&columns, &data);
     gateway_remove_files();
-    if (call->failed_by[0] && !call->json)
+    if (call->failed_by[0])
         end_failed();
     warn();
-    result = call->json ? gateway_value(call->json) : mxCreateStructMatrix(1, 1, 0, NULL);
+    result = gateway_value(call->json);
     if (columns) {
         set(result, "columns", columns);
         set(result, "data", data);
     }
-    set(result, "notes", notes());
     if (call->model)
         set(result, "model", mxCreateString(call->model));
     plhs[0] = result;

@@ -45,7 +45,9 @@ def version():
     return re.search(r'#define IMK_VERSION "([0-9.]+)"', text)[1]
 
 
-flags = ["-std=c17", "-O2", "-fvisibility=hidden", "-Wall", "-Wextra", "-Wno-missing-field-initializers"]
+# A function that is not of the stable ABI is not declared.
+flags = ["-std=c17", "-O2", "-fvisibility=hidden", "-Wall", "-Wextra",
+         "-Wno-missing-field-initializers", "-Werror=implicit-function-declaration"]
 links = ["-Wl,--exclude-libs,ALL"]
 if os.environ.get("IMUKIT_SANITIZE"):
     flags += ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-O1", "-g"]

@@ -34,7 +34,7 @@ PUBLIC = {
              "model_unstated technology_map",
     "noise": "filter_noise noise",
     "motion": "earth motion motion_script",
-    "simulate": "simulate",
+    "simulate": "sensor simulate",
     "identify": "allan allan_fit allan_gaps allan_stream identify identify_joint identify_plan "
                 "identify_record noise_map record_screen spectrum",
     "compensate": "compensate firmware",

@@ -119,7 +119,9 @@ static void fail(const char *code, const imk_error *error, const char *file, con
     vsnprintf(text, sizeof text, format, arguments);
     command_clean(text);
     has_said_why = true;
-    voice_say(VOICE_FAILURE, current_verb, code ? code : "failed", text);
+    char word[48];
+    told_code(code, error, sizeof word, word);
+    voice_say(VOICE_FAILURE, current_verb, word, text);
     told_error(code, error, file, text);
 }
 

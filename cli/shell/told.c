@@ -86,6 +86,14 @@ static void status_code(imk_status status, size_t size, char *code)
     code[length] = '\0';
 }
 
+void told_code(const char *code, const imk_error *error, size_t size, char *text)
+{
+    if (code || !error)
+        snprintf(text, size, "%s", code ? code : "failed");
+    else
+        status_code(error->status, size, text);
+}
+
 void told_error(const char *code, const imk_error *error, const char *file, const char *message)
 {
     if (failure.told)
@@ -93,10 +101,7 @@ void told_error(const char *code, const imk_error *error, const char *file, cons
     failure.told = true;
     if (error)
         failure.error = *error;
-    if (code || !error)
-        snprintf(failure.code, sizeof failure.code, "%s", code ? code : "failed");
-    else
-        status_code(error->status, sizeof failure.code, failure.code);
+    told_code(code, error, sizeof failure.code, failure.code);
     snprintf(failure.message, sizeof failure.message, "%s", message);
     snprintf(failure.file, sizeof failure.file, "%s", file ? file : "");
 }

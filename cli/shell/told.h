@@ -29,6 +29,8 @@ size_t told_count(void);
 const told *told_get(size_t index);
 size_t told_warnings(void);
 
+/* Code of an error: `code`, or that of the status of `error`, or "failed". */
+void told_code(const char *code, const imk_error *error, size_t size, char *text);
 /* Keep why the command fails; of several reasons the first.
  * @param code   NULL: that of the status of `error`, or "failed"
  * @param error  NULL: no details

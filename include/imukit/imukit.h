@@ -62,6 +62,7 @@
 #include "imukit/reference_alignment.h"
 #include "imukit/repeatability.h"
 #include "imukit/samples.h"
+#include "imukit/sensor.h"
 #include "imukit/simulate.h"
 #include "imukit/spectrum.h"
 #include "imukit/standing_start.h"

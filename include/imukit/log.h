@@ -127,6 +127,14 @@ typedef struct imk_log_reader imk_log_reader;
 IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settings,
                                 imk_log_reader **reader, imk_error *error);
 
+/** As imk_log_open(), for a first look: a log of which units, times or names are missing is opened
+ *  with settings.as_written.
+ *  @param lacking  receives what is missing; its status is IMK_OK if nothing is
+ *  @return errors of imk_log_open() */
+IMK_API imk_status imk_log_open_first_look(const char *path, const imk_log_settings *settings,
+                                           imk_log_reader **reader, imk_error *lacking,
+                                           imk_error *error);
+
 /** The sensors of a log, without choosing one: as imk_log_open(), but settings.topic and .instance
  *  are left aside. Only what stands at the beginning, at the end and in an index of the file is
  *  read.

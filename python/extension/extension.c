@@ -2,9 +2,17 @@
 /* The module imukit._core. */
 #include "extension.h"
 
-static PyMethodDef *const functions[] = {record_functions, allan_functions,   identify_functions,
-                                         unit_functions,   model_functions,   drift_functions,
-                                         grade_functions,  navigate_functions};
+static PyMethodDef *const functions[] = {
+    allan_functions,  drift_functions,    grade_functions,    identify_functions,
+    info_functions,   model_functions,    navigate_functions, record_functions,
+    sensor_functions, simulate_functions, spectrum_functions, tune_functions,
+    unit_functions,
+};
+
+/* Types, exceptions and constants. */
+static bool (*const additions[])(PyObject *module) = {
+    add_errors, add_result, add_record, add_identify, add_model, add_sensor, add_simulate,
+};
 
 static struct PyModuleDef definition = {
     PyModuleDef_HEAD_INIT,
@@ -16,9 +24,9 @@ static struct PyModuleDef definition = {
 PyMODINIT_FUNC PyInit__core(void)
 {
     PyObject *module = PyModule_Create(&definition);
-    bool good = module && add_errors(module) && add_result(module) && add_record(module) &&
-                add_model(module) && add_identify(module) &&
-                PyModule_AddStringConstant(module, "version", imk_version()) == 0;
+    bool good = module && PyModule_AddStringConstant(module, "version", imk_version()) == 0;
+    for (size_t k = 0; good && k < sizeof additions / sizeof additions[0]; k++)
+        good = additions[k](module);
     for (size_t k = 0; good && k < sizeof functions / sizeof functions[0]; k++)
         good = PyModule_AddFunctions(module, functions[k]) == 0;
     if (!good)

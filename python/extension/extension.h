@@ -14,6 +14,7 @@
 #include <Python.h>
 
 #include "imukit/job.h"
+#include "imukit/log.h"
 #include "imukit/model_file.h"
 #include "imukit/record.h"
 #include "imukit/result.h"
@@ -94,6 +95,8 @@ typedef struct record {
 record *record_begin(PyObject *object);
 /** It is free again. */
 void record_end(record *r);
+/** Read settings of a log, as settings_read(). */
+bool log_settings_read(PyObject *dictionary, imk_log_settings *settings);
 /** Make a record of a reader and take it over. @param name  of the log. @return NULL with an
  *  exception; the reader is then closed */
 PyObject *record_of_reader(void *reader, const char *name);
@@ -107,6 +110,8 @@ imk_result *begin_result(const char *command);
 /** The result and the findings as a tuple. Takes over the result. */
 PyObject *result_with(imk_result *result, const imk_findings *findings, const char *record,
                       const char *model);
+/** A tuple with one value more. Both are taken over; NULL for one of them gives NULL. */
+PyObject *extended(PyObject *tuple, PyObject *more);
 /** Add the type to the module. */
 bool add_result(PyObject *module);
 
@@ -157,12 +162,29 @@ PyObject *make_model(const imk_model *model, imk_document *document);
 /** Add the type to the module. */
 bool add_model(PyObject *module);
 
+/** Add the type of sensors that are stepped to the module. */
+bool add_sensor(PyObject *module);
 /** Add the constants of identification to the module. */
 bool add_identify(PyObject *module);
 
+/** The motion of imukit.Motion, which the object keeps; NULL with an exception. */
+const struct imk_motion_file *motion_of(PyObject *object);
+/** Add the type of simulations to the module. */
+bool add_simulate(PyObject *module);
+
 /** Functions of the module, by their files; each ends with a row of zeros. */
-extern PyMethodDef record_functions[], allan_functions[], identify_functions[], unit_functions[],
-    model_functions[];
-extern PyMethodDef drift_functions[], grade_functions[], navigate_functions[];
+extern PyMethodDef allan_functions[];
+extern PyMethodDef drift_functions[];
+extern PyMethodDef grade_functions[];
+extern PyMethodDef identify_functions[];
+extern PyMethodDef info_functions[];
+extern PyMethodDef model_functions[];
+extern PyMethodDef navigate_functions[];
+extern PyMethodDef record_functions[];
+extern PyMethodDef sensor_functions[];
+extern PyMethodDef simulate_functions[];
+extern PyMethodDef spectrum_functions[];
+extern PyMethodDef tune_functions[];
+extern PyMethodDef unit_functions[];
 
 #endif

@@ -3,8 +3,6 @@
  * without a copy. */
 #include "extension.h"
 
-#include "imukit/log.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -123,6 +121,11 @@ static const setting log_rows[] = {
     ROW(reopened, SETTING_FLAG, NULL),    ROW(instance, SETTING_INT, NULL),
 #undef ROW
 };
+
+bool log_settings_read(PyObject *dictionary, imk_log_settings *settings)
+{
+    return SETTINGS_READ(dictionary, log_rows, settings);
+}
 
 /* open_log(path, settings) */
 static PyObject *open_log(PyObject *module, PyObject *args)

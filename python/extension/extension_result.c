@@ -49,6 +49,16 @@ PyObject *result_with(imk_result *made, const imk_findings *findings, const char
     return NULL;
 }
 
+PyObject *extended(PyObject *tuple, PyObject *more)
+{
+    PyObject *last = tuple && more ? PyTuple_Pack(1, more) : NULL;
+    PyObject *made = last ? PySequence_Concat(tuple, last) : NULL;
+    Py_XDECREF(last);
+    Py_XDECREF(tuple);
+    Py_XDECREF(more);
+    return made;
+}
+
 static PyObject *text_of(imk_status status, char *text, size_t size)
 {
     if (status != IMK_OK)

@@ -8,15 +8,66 @@ from ._allan import AllanCurve, AllanResult, allan
 from ._core import Error, FileError, convert_unit, normal_gravity
 from ._core import version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
+from ._estimates import Estimate
 from ._grade import GradeResult, grade
 from ._identify import IdentifyResult, identify
+from ._info import InfoResult, info
 from ._log import Log, read_log
 from ._model import Device, Model, devices
+from ._motion import Motion
 from ._navigate import Innovations, NavigateResult, Track, navigate
 from ._results import DataWarning, Fields, Finding, Result
+from ._sensor import Sensor
+from ._simulate import Blocks, simulate, simulate_blocks, simulate_runs, simulate_truth
+from ._spectrum import SpectrumCurve, SpectrumLine, SpectrumResult, spectrum
+from ._tune import FilterAnswer, TuneResult, tune
 
-__all__ = ["AllanCurve", "AllanResult", "DataWarning", "Error", "Fields", "FileError", "Finding",
-           "IdentifyResult", "Log", "Device", "Model", "Result", "devices", "allan", "convert_unit", "identify",
-           "normal_gravity", "read_log", "DriftGrowth", "DriftMoments", "DriftResult", "DriftRuns",
-           "DriftShare", "drift", "GradeResult", "grade",
-           "Innovations", "NavigateResult", "Track", "navigate"]
+__all__ = [
+    "AllanCurve",
+    "AllanResult",
+    "Blocks",
+    "DataWarning",
+    "Device",
+    "DriftGrowth",
+    "DriftMoments",
+    "DriftResult",
+    "DriftRuns",
+    "DriftShare",
+    "Error",
+    "Estimate",
+    "Fields",
+    "FileError",
+    "FilterAnswer",
+    "Finding",
+    "GradeResult",
+    "IdentifyResult",
+    "InfoResult",
+    "Innovations",
+    "Log",
+    "Model",
+    "Motion",
+    "NavigateResult",
+    "Result",
+    "Sensor",
+    "SpectrumCurve",
+    "SpectrumLine",
+    "SpectrumResult",
+    "Track",
+    "TuneResult",
+    "allan",
+    "convert_unit",
+    "devices",
+    "drift",
+    "grade",
+    "identify",
+    "info",
+    "navigate",
+    "normal_gravity",
+    "read_log",
+    "simulate",
+    "simulate_blocks",
+    "simulate_runs",
+    "simulate_truth",
+    "spectrum",
+    "tune",
+]

@@ -57,5 +57,12 @@ def empty(rows: int) -> Array:
     return _view(array.array("d", bytes(8 * rows)))
 
 
+def matrix(vector: Array, rows: int, columns: int) -> Array:
+    """The numbers of a vector as rows, not copied."""
+    if numpy is not None:
+        return vector.reshape(rows, columns)
+    return vector.cast("B").cast("d", (rows, columns))
+
+
 def _view(made: array.array[float]) -> Array:
     return numpy.asarray(made) if numpy is not None else memoryview(made)

@@ -29,7 +29,7 @@ def open_record(data: Data, rate: float | str | None, columns: str | Sequence[st
     name     in messages, where it is no file
     """
     if is_path(data):
-        return _core.open_log(data, _log_options(rate, columns, log))
+        return _core.open_log(data, log_options(rate, columns, log))
     if log:
         raise TypeError(f"{', '.join(log)}: only for a log in a file")
     if hasattr(data, "_imukit_columns"):
@@ -48,7 +48,8 @@ def open_record(data: Data, rate: float | str | None, columns: str | Sequence[st
     return _core.arrays(name, tuple(names), arrays, seconds)
 
 
-def _log_options(rate: Any, columns: Any, log: Mapping[str, Any] | None) -> dict[str, Any]:
+def log_options(rate: Any, columns: Any, log: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Options for reading a log, as the extension takes them."""
     options = dict(log or {})
     if rate is not None:
         options["rate"] = rate

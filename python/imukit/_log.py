@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from . import _arrays, _core
@@ -50,13 +50,23 @@ class Log(Mapping[str, Any]):
         return f"{self.path}: {self.rows} rows at {self.rate:.6g} Hz: {columns}"
 
     def _imukit_columns(self) -> tuple[list[str], list[Any]]:
-        names = [f"{name} [{unit}]" if unit and name not in _SENSORS else name
-                 for name, unit in self.units.items()]
+        names = [f"{name} [{unit}]" if unit else name for name, unit in self.units.items()]
         return names, list(self._columns.values())
 
 
-_SENSORS = {"time", "temperature", *(f"{sensor}_{axis}" for sensor in ("gyro", "accel", "mag")
-                                     for axis in "xyz01234567")}
+def made_log(name: str, columns: Sequence[tuple[str, str, str]], arrays: Sequence[Any],
+             interval: float, due: int) -> Log:
+    """A log of columns that were made in memory: (name, unit, SI unit) of each, and its numbers.
+
+    due  rows that there would be if none were lost
+    """
+    rows = len(arrays[0])
+    time = arrays[0]
+    described = [(*column, array) for column, array in zip(columns, arrays)]
+    lost = due - rows
+    gaps = sum(b - a > 1.5 * interval for a, b in zip(time, time[1:])) if lost else 0
+    first, last = (float(time[0]), float(time[-1])) if rows else (float("nan"),) * 2
+    return Log(name, (described, (), rows, interval, first, last, 0.0, gaps, lost, 0, 0, 0))
 
 
 def read_log(path: str | os.PathLike[str], *, rate: float | str | None = None,

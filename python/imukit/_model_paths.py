@@ -136,6 +136,8 @@ def encode(path: str, value: Any, sigma: Any = None) -> Any:
     if unit is None and _is_several(value) and \
             (_core.path_unit(f"{path}[0]") or not all(map(_is_number, value))):
         return [encode(f"{path}[{k}]", item) for k, item in enumerate(value)]
+    if unit is None:
+        unit = _core.path_unit(f"{path}[0]")  # the only coefficient of a polynomial
     return _quantity(value, sigma, unit, path)
 
 

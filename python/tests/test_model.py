@@ -24,7 +24,7 @@ gyro:
       coefficients: [0.1 0.2 0.3 deg/h/K, 1e-3 deg/h/K^2]
     warm_up: {amplitude: 2 deg/h, time: 10 min}
   scale_factor:
-    temperature: {reference_temperature: 298.15 K, valid_range: 233.15 358.15 K, coefficients: 5 ppm/K}
+    temperature: {reference_temperature: 298 K, valid_range: 233 358 K, coefficients: 5 ppm/K}
   misalignment: 0.1 0.2 0.3 0.4 0.5 0.6 mrad
   g2_sensitivity: [0.1 0 0 0 0 0 deg/h/g^2, 0 0 0 0 0 0 deg/h/g^2, 0 0 0 0 0 0.2 deg/h/g^2]
   noise:

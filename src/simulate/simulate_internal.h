@@ -74,6 +74,19 @@ bool imki_scenes_agree(const imki_scene *a, const imki_scene *b);
 /* Make the rows first … first + rows - 1, rows * substeps <= IMKI_STRETCH. Stretches follow one
  * another. */
 void imki_scene_fill(imki_scene *scene, uint64_t first, size_t rows, const imk_executor *executor);
+/* e^(-t/time) in the middle of part `within` of the block of 512 parts that begins with number
+ * `first`, of a row's `parts` of this length, is the product of these: one exponential serves 512.
+ */
+static inline double imki_warm_up_block(uint64_t first, size_t parts, double part, double time)
+{
+    const double anchor = (double)first + 0.5 - (double)parts;
+    return imk_exp(-(anchor * part) / time);
+}
+
+static inline double imki_warm_up_within(size_t within, double part, double time)
+{
+    return imk_exp(-((double)within * part) / time);
+}
 /* The field in body axes at an instant. */
 void imki_field_at(const imki_scene *scene, double time, double field[3]);
 /* True time at the end of a row, from the start of the motion. */
@@ -196,6 +209,8 @@ void imki_channel_noise(size_t count, imki_channel *const *channels, double *con
 /* ---- unit.c: the axes of a unit ---- */
 
 size_t imki_axes_of(const imk_triad *triad);
+/* True when a number of one of its axes is not 0. */
+bool imki_triad_has(const imk_triad *triad, const imk_axes *numbers);
 /* The axis of a channel: gyros first, then accelerometers, then a magnetometer. */
 imki_axis imki_axis_of(const imk_model *model, size_t channel);
 /* Bias and scale factor of an axis that this run has beside those of the model. */

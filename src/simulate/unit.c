@@ -8,6 +8,14 @@ size_t imki_axes_of(const imk_triad *triad)
     return triad->present ? (size_t)triad->axis_count : 0;
 }
 
+bool imki_triad_has(const imk_triad *triad, const imk_axes *numbers)
+{
+    for (int i = 0; triad->present && i < triad->axis_count; i++)
+        if (numbers->value[i] != 0.0)
+            return true;
+    return false;
+}
+
 imki_axis imki_axis_of(const imk_model *model, size_t channel)
 {
     static const char *const names[IMK_KINDS] = {"gyro", "accel", "mag"};
