@@ -6,7 +6,7 @@ static PyMethodDef *const functions[] = {
     allan_functions,    calibrate_functions, drift_functions,    grade_functions,
     identify_functions, info_functions,      model_functions,    navigate_functions,
     record_functions,   sensor_functions,    simulate_functions, spectrum_functions,
-    unit_functions,
+    tune_functions,     unit_functions,
 };
 
 /* Types, exceptions and constants. */

@@ -175,6 +175,8 @@ bool add_calibrate(PyObject *module);
 /** Add the constants of identification to the module. */
 bool add_identify(PyObject *module);
 
+/** The motion of imukit.Motion, which the object keeps; NULL with an exception. */
+const struct imk_motion_file *motion_of(PyObject *object);
 /** Add the type of simulations to the module. */
 bool add_simulate(PyObject *module);
 
@@ -191,6 +193,7 @@ extern PyMethodDef record_functions[];
 extern PyMethodDef sensor_functions[];
 extern PyMethodDef simulate_functions[];
 extern PyMethodDef spectrum_functions[];
+extern PyMethodDef tune_functions[];
 extern PyMethodDef unit_functions[];
 
 #endif

@@ -21,6 +21,7 @@ from ._results import DataWarning, Fields, Finding, Result
 from ._sensor import Sensor
 from ._simulate import Blocks, simulate, simulate_blocks, simulate_runs, simulate_truth
 from ._spectrum import SpectrumCurve, SpectrumLine, SpectrumResult, spectrum
+from ._tune import FilterAnswer, TuneResult, tune
 
 __all__ = [
     "AllanCurve",
@@ -38,6 +39,7 @@ __all__ = [
     "Estimate",
     "Fields",
     "FileError",
+    "FilterAnswer",
     "Finding",
     "GradeResult",
     "IdentifyResult",
@@ -56,6 +58,7 @@ __all__ = [
     "SpectrumLine",
     "SpectrumResult",
     "Track",
+    "TuneResult",
     "allan",
     "calibrate",
     "convert_unit",
@@ -76,4 +79,5 @@ __all__ = [
     "simulate_runs",
     "simulate_truth",
     "spectrum",
+    "tune",
 ]

@@ -12,6 +12,7 @@ from ._estimates import plain_value
 from ._inputs import Data, is_path, open_record
 from ._model import Model, as_model
 from ._results import LEVELS, Result, tell
+from ._motion import Motion
 from ._scenes import ModelLike, as_motion
 from ._units import si
 
@@ -237,10 +238,15 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
     before = None if into is None else as_model(into)
     if name is None and not (before and before.get("name", None)):
         name = os.path.basename(names[0]).partition(".")[0] if is_path(runs[0]) else "record"
+    place = _place(position)
+    moved = None
+    if motion is not None:
+        at = (None, None) if place is None or isinstance(motion, Motion) else (place[0], place[2])
+        moved = as_motion(motion, *at, 1)
     core, findings, text, level = _core.calibrate(
         opened, names, () if repeats else tuple(procedures), _settings(given, repeats),
-        {key: _counts(given[key]) for key in _SHEET}, _place(position), _known(model),
-        before._core if before is not None else None, as_motion(motion), name, poses, progress)
+        {key: _counts(given[key]) for key in _SHEET}, place, _known(model),
+        before._core if before is not None else None, moved, name, poses, progress)
     result = CalibrateResult(core, findings, text, level, anyway)
     tell(result)
     return result
