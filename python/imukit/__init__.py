@@ -10,6 +10,7 @@ from ._core import Error, FileError, convert_unit, normal_gravity
 from ._core import version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
 from ._estimates import Estimate
+from ._evaluate import EvaluateResult, Figure, evaluate
 from ._grade import GradeResult, grade
 from ._identify import (IdentifyResult, RecordPlan, identify, identify_curve, identify_devices,
                         identify_runs, plan_record)
@@ -36,7 +37,9 @@ __all__ = [
     "DriftShare",
     "Error",
     "Estimate",
+    "EvaluateResult",
     "Fields",
+    "Figure",
     "FileError",
     "Finding",
     "GradeResult",
@@ -58,6 +61,7 @@ __all__ = [
     "convert_unit",
     "devices",
     "drift",
+    "evaluate",
     "grade",
     "identify",
     "identify_curve",
