@@ -130,6 +130,7 @@ class Calibrate(unittest.TestCase):
                    {"accel_sensitivity": ()}, {"accel_sensitivity": (1,) * 9},
                    {"accel_range": -1}, {"field": ("50 uT",)}, {"field": (5, 6, 7)},
                    {"motion": "no_such_file.yaml"}, {"motion_offset": 3},
+                   {"turn_angle": 1}, {"field": 5}, {"dip": 2}, {"reference_temperature": 300},
                    {"model": "no such part"}, {"into": "ADIS16488", "model": "ADIS16488"},
                    {"temperature_order": 77}, {"table_axis": "w"}, {"placement": -1},
                    {"procedure": "rate-table"}, {"procedure": "repeatability"}]
