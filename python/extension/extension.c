@@ -3,10 +3,10 @@
 #include "extension.h"
 
 static PyMethodDef *const functions[] = {
-    allan_functions,    calibrate_functions, drift_functions,    grade_functions,
-    identify_functions, info_functions,      model_functions,    navigate_functions,
-    record_functions,   sensor_functions,    simulate_functions, spectrum_functions,
-    tune_functions,     unit_functions,
+    allan_functions,    calibrate_functions, drift_functions,  evaluate_functions,
+    grade_functions,    identify_functions,  info_functions,   model_functions,
+    navigate_functions, record_functions,    sensor_functions, simulate_functions,
+    spectrum_functions, tune_functions,      unit_functions,
 };
 
 /* Types, exceptions and constants. */

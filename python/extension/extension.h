@@ -184,6 +184,7 @@ bool add_simulate(PyObject *module);
 extern PyMethodDef allan_functions[];
 extern PyMethodDef calibrate_functions[];
 extern PyMethodDef drift_functions[];
+extern PyMethodDef evaluate_functions[];
 extern PyMethodDef grade_functions[];
 extern PyMethodDef identify_functions[];
 extern PyMethodDef info_functions[];

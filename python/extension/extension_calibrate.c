@@ -117,7 +117,7 @@ static bool data_sheet_take(PyObject *numbers, imk_calibrate_log_settings *s)
     return good;
 }
 
-static bool settings_take(PyObject *dictionary, PyObject *place, imk_calibrate_log_settings *s)
+bool calibrate_settings_read(PyObject *dictionary, PyObject *place, imk_calibrate_log_settings *s)
 {
     *s = imk_calibrate_log_default();
     s->activity = true;
@@ -348,7 +348,7 @@ static PyObject *calibrate(PyObject *module, PyObject *args)
         return PyErr_NoMemory();
     b->name = name;
     b->findings = PyList_New(0);
-    bool good = b->findings && settings_take(dictionary, place, &b->settings) &&
+    bool good = b->findings && calibrate_settings_read(dictionary, place, &b->settings) &&
                 data_sheet_take(sheet, &b->settings) && runs_take(b, runs, procedures) &&
                 models_copy(b, runs, model, into);
     for (size_t k = 0; good && k < b->count; k++) {

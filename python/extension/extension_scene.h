@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What drift, grade, navigate and tune share: models with names, motions, aids. */
+/* What calibrate, drift, evaluate, grade, navigate and tune share: models with names, motions,
+ * aids. */
 #ifndef IMUKIT_EXTENSION_SCENE_H
 #define IMUKIT_EXTENSION_SCENE_H
 
@@ -47,6 +48,11 @@ bool motion_take(PyObject *pair, motion_use *use);
 
 /** Aids of a tuple of texts (aid_text.h); false with an exception. */
 bool aids_take(PyObject *texts, imk_aid aid[IMK_AIDS_MAX], size_t *count);
+
+/** Settings of a calibration, or of reading a test; false with an exception.
+ *  @param place  tuple of latitude [rad], longitude [rad], height [m]; None: not known */
+bool calibrate_settings_read(PyObject *dictionary, PyObject *place,
+                             imk_calibrate_log_settings *settings);
 
 /** Add to a list of findings; false with an exception. */
 bool add_finding(PyObject *findings, imk_finding_level level, const char *code, const char *format,

@@ -9,6 +9,7 @@ from ._calibrate import CalibrateResult, Parameter, PoseResidual, calibrate
 from ._core import Error, FileError, convert_unit, normal_gravity, version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
 from ._estimates import Estimate
+from ._evaluate import EvaluateResult, Figure, evaluate
 from ._grade import GradeResult, grade
 from ._identify import (IdentifyResult, RecordPlan, identify, identify_curve, identify_devices,
                         identify_runs, plan_record)
@@ -37,7 +38,9 @@ __all__ = [
     "DriftShare",
     "Error",
     "Estimate",
+    "EvaluateResult",
     "Fields",
+    "Figure",
     "FileError",
     "FilterAnswer",
     "Finding",
@@ -64,6 +67,7 @@ __all__ = [
     "convert_unit",
     "devices",
     "drift",
+    "evaluate",
     "grade",
     "identify",
     "identify_curve",

@@ -9,7 +9,7 @@ from typing import Any
 
 from . import _arrays, _core
 from ._estimates import plain_value
-from ._inputs import Data, is_path, open_record
+from ._inputs import Data, is_path, is_several, open_record
 from ._model import Model, as_model
 from ._results import LEVELS, Result, tell
 from ._motion import Motion
@@ -211,7 +211,7 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
 
     >>> import imukit
     >>> faces = [(9.8, 0, 0), (-9.8, 0, 0), (0, 9.8, 0), (0, -9.8, 0), (0, 0, 9.8), (0, 0, -9.8)]
-    >>> table = {f"accel_{a}": [1.01 * f[k] + 0.1 + 1e-6 * (i * i % 7)
+    >>> table = {f"accel_{a}": [1.01 * f[k] + 0.1 + 1e-6 * (i ** 3 % 31)
     ...                         for i, f in enumerate(faces * 2)] for k, a in enumerate("xyz")}
     >>> result = imukit.calibrate(table, "sixposition", pose_means=True, gravity=9.8)
     >>> found = result.estimates["accel.scale_factor.fixed.x"]
@@ -219,7 +219,7 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
     (0.01, 'm/s^2')
     """
     given = dict(locals())
-    several = not isinstance(procedure, str) or _is_several(data)
+    several = not isinstance(procedure, str) or is_several(data)
     runs = list(data) if several else [data]
     procedures = [procedure] * len(runs) if isinstance(procedure, str) else list(procedure)
     if len(procedures) != len(runs):
@@ -271,6 +271,8 @@ def _settings(given: Mapping[str, Any], repeats: bool) -> dict[str, Any]:
     field = given["field"]
     pair = not isinstance(field, str) and isinstance(field, Sequence)
     auto = given["motion_offset"] == "auto"
+    if pair and len(field) != 2:
+        raise ValueError(f"field={field!r}: expected a number, or a number and its 1 sigma")
     return {**{key: given[key] for key in _SAME}, "repeatability": repeats,
             "closed_form": given["estimator"] == "closed-form",
             "least_squares": not given["robust"],
@@ -319,10 +321,3 @@ def _place(position: str | Sequence[float | str] | None) -> tuple[float, float, 
 def _is_model(run: Any) -> bool:
     return isinstance(run, Model) or is_path(run) and \
         os.fspath(run).endswith((".yaml", ".yml", ".json"))
-
-
-def _is_several(data: Any) -> bool:
-    """Records, not columns of one."""
-    return isinstance(data, (list, tuple)) and len(data) > 0 and all(
-        is_path(one) or isinstance(one, Mapping) or hasattr(one, "columns")
-        or hasattr(one, "_imukit_columns") or isinstance(one, Model) for one in data)

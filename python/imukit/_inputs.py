@@ -19,6 +19,13 @@ def is_path(data: Data) -> bool:
     return isinstance(data, (str, os.PathLike))
 
 
+def is_several(data: Any) -> bool:
+    """Is it a sequence of records, not of the columns of one?"""
+    return isinstance(data, (list, tuple)) and len(data) > 0 and all(
+        is_path(one) or isinstance(one, Mapping) or hasattr(one, "columns")
+        or hasattr(one, "_imukit_columns") for one in data)
+
+
 def open_record(data: Data, rate: float | str | None, columns: str | Sequence[str] | None,
                 log: Mapping[str, Any] | None = None, name: str = "the record") -> Any:
     """The record of `data`.
