@@ -101,8 +101,8 @@ static size_t divide(const imk_model *model, const imk_sensor_settings *settings
     *sensor = imki_take(parts, sizeof made);
     made.channel = imki_take(parts, count * channels * sizeof *made.channel);
     made.number = imki_take(parts, IMKI_SENSOR_NUMBERS * channels * places * sizeof(double));
-    const size_t zero = parts->used;
     made.rows = imki_take(parts, IMKI_SENSOR_ROWS * imki_row_places(count) * sizeof(double));
+    const size_t zero = parts->used;
     made.axis = imki_take(parts, channels * sizeof *made.axis);
     made.quantizer = imki_take(parts, channels * sizeof *made.quantizer);
     for (int kind = 0; kind < 2; kind++)
