@@ -2,7 +2,7 @@
 /* A loop as the simulator of a robot has it: the motion is computed step by step, and the sensor
  * reads each sample when it has happened.
  *
- *     example_step_sensor tactical
+ *     example_step_sensor [DEVICE]
  *
  * A robot hops and turns. The sensor, a device of the catalogue or a class, is sampled every fifth
  * step of the simulation. Beside it a perfect one shows that nothing of the motion is lost.
@@ -75,9 +75,9 @@ static imk_sensor *start(const imk_model *model, void **memory)
 int main(int argc, char **argv)
 {
     static imk_model model, perfect; /* large: keep them off the stack */
-    const imk_device *device = argc == 2 ? imk_device_find(argv[1]) : NULL;
+    const imk_device *device = imk_device_find(argc > 1 ? argv[1] : "tactical");
     if (!device) {
-        fprintf(stderr, "usage: example_step_sensor DEVICE\n");
+        fprintf(stderr, "usage: example_step_sensor [DEVICE]\n");
         return EXIT_FAILURE;
     }
     imk_device_model(device, &model);
