@@ -5,12 +5,13 @@ Numbers are in SI units: rad/s, m/s^2, s, K, T. Wherever a number is an argument
 may stand for it: "0.1 deg/s".
 """
 from ._allan import AllanCurve, AllanResult, allan
-from ._core import Error, FileError, convert_unit, normal_gravity
-from ._core import version as __version__
+from ._calibrate import CalibrateResult, Parameter, PoseResidual, calibrate
+from ._core import Error, FileError, convert_unit, normal_gravity, version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
 from ._estimates import Estimate
 from ._grade import GradeResult, grade
-from ._identify import IdentifyResult, identify
+from ._identify import (IdentifyResult, RecordPlan, identify, identify_curve, identify_devices,
+                        identify_runs, plan_record)
 from ._info import InfoResult, info
 from ._log import Log, read_log
 from ._model import Device, Model, devices
@@ -26,6 +27,7 @@ __all__ = [
     "AllanCurve",
     "AllanResult",
     "Blocks",
+    "CalibrateResult",
     "DataWarning",
     "Device",
     "DriftGrowth",
@@ -47,6 +49,9 @@ __all__ = [
     "Model",
     "Motion",
     "NavigateResult",
+    "Parameter",
+    "PoseResidual",
+    "RecordPlan",
     "Result",
     "Sensor",
     "SpectrumCurve",
@@ -55,14 +60,19 @@ __all__ = [
     "Track",
     "TuneResult",
     "allan",
+    "calibrate",
     "convert_unit",
     "devices",
     "drift",
     "grade",
     "identify",
+    "identify_curve",
+    "identify_devices",
+    "identify_runs",
     "info",
     "navigate",
     "normal_gravity",
+    "plan_record",
     "read_log",
     "simulate",
     "simulate_blocks",
