@@ -11,8 +11,8 @@ from . import _arrays, _core
 from ._estimates import plain_value
 from ._inputs import Data, is_path, is_several, open_record
 from ._model import Model, as_model
-from ._results import LEVELS, Result, tell
 from ._motion import Motion
+from ._results import LEVELS, Result, tell
 from ._scenes import ModelLike, as_motion
 from ._units import si
 
@@ -140,7 +140,7 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
               placement: float | str | None = None,
               g_sensitivity_sigma: float | str | None = None,
               mounting: float | str | None = None, turn_angle: float | str | None = None,
-              motion: str | os.PathLike[str] | None = None,
+              motion: Motion | str | os.PathLike[str] | None = None,
               motion_offset: float | str | None = None, table_axis: str | None = None,
               temperature_order: int | None = None,
               reference_temperature: float | str | None = None, poses: bool = False,
@@ -195,7 +195,7 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
     mounting     1 sigma of the unit's attitude on its fixture or table [rad]; None: 0
     turn_angle   ferraris: angle of each turn, with sign; turns: of each turn whose label states
                  none, above 0 [rad]; None: 360 deg
-    motion       motion file that the table ran, or the text of a script: the reference
+    motion       Motion or motion file that the table ran, or the text of a script: the reference
     motion_offset  time of the record at which it begins [s], or 'auto': find it; None: 0 s
     table_axis   'x', 'y' or 'z': axis about which the table turns the unit, for a column table_rate
     temperature_order  thermal: of the bias polynomial, 1 … 5; None: chosen by cross-validation
@@ -239,10 +239,9 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
     if name is None and not (before and before.get("name", None)):
         name = os.path.basename(names[0]).partition(".")[0] if is_path(runs[0]) else "record"
     place = _place(position)
-    moved = None
-    if motion is not None:
-        at = (None, None) if place is None or isinstance(motion, Motion) else (place[0], place[2])
-        moved = as_motion(motion, *at, 1)
+    there = None if isinstance(motion, Motion) else place
+    moved = None if motion is None else \
+        as_motion(motion, there[0] if there else None, there[2] if there else None)
     core, findings, text, level = _core.calibrate(
         opened, names, () if repeats else tuple(procedures), _settings(given, repeats),
         {key: _counts(given[key]) for key in _SHEET}, place, _known(model),

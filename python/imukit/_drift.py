@@ -218,7 +218,7 @@ def drift(models: ModelLike | Sequence[ModelLike], motion: Any = None, *,
     models       a Model, the name of a file or of a device; or up to 8 of them, to compare
     motion       a Motion, name of a motion file, or text of a script; without, the unit is at rest
     rate         sampling rate [Hz]
-    duration     length of the navigation [s]; default: 24 h, that of the motion, or the time of want
+    duration     length of the navigation [s]; default: 24 h, that of the motion, or want's time
     times        times of the table instead [s]: numbers, or "1min, 10min, 1h"
     latitude     geodetic [rad]; default 45 deg, or what the motion states
     height       above the ellipsoid [m]; default 0

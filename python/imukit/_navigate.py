@@ -164,8 +164,8 @@ def navigate(data: Data, model: ModelLike | None = None, *, position: Numbers,
     aids         readings of position, velocity, heading, height or speed, with a column of times on
                  the clock of the log: path of a table, or columns as arrays. It may be the log
                  itself. Needs a model
-    aid_sigma    1 sigma of what is used of it, such as "position 1 1 2 m, velocity 0.05 m/s"; needed
-                 unless there are columns of sigmas
+    aid_sigma    1 sigma of what is used of it, such as "position 1 1 2 m, velocity 0.05 m/s";
+                 needed unless there are columns of sigmas
     aid_map      columns by the names that a table in a file has for them
     aid_lever_arm  from the unit to the antenna: forward, right, down [m], or a text such as "0.2
                  -0.5 -1.1 +- 0.02 m"
@@ -277,7 +277,8 @@ def _check_company(**o: Any) -> None:
          "still_rotation is for zero_velocity"),
         (o["aids"] is None and (o["aid_sigma"] is not None or o["aid_map"] is not None),
          "aid_sigma and aid_map are about aids"),
-        (o["aid_map"] is not None and not is_path(o["aids"]), "aid_map: only for a table in a file"),
+        (o["aid_map"] is not None and not is_path(o["aids"]),
+         "aid_map: only for a table in a file"),
         (o["zero_velocity"] is not None and o["model"] is None,
          "zero_velocity needs the errors of the sensors: give a model"),
         (o["aids"] is not None and o["model"] is None,

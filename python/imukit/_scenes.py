@@ -49,8 +49,8 @@ def _names(argument: str, names: str | Sequence[str] | None) -> tuple[str, ...] 
     return tuple(names)
 
 
-def as_motion(motion: Any, latitude: float | str | None, height: float | str | None,
-              seed: int) -> tuple[str, Any]:
+def as_motion(motion: Any, latitude: float | str | None = None,
+              height: float | str | None = None, seed: int = 1) -> tuple[str, Any]:
     """A motion of a Motion, the name of a file or the text of a script, with its name."""
     if isinstance(motion, Motion):
         if latitude is not None or height is not None:

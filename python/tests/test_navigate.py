@@ -8,7 +8,7 @@ import tempfile
 import unittest
 import warnings
 
-from compare import COMMAND, command_json, python_json
+from command import COMMAND, command_json, python_json
 
 import imukit
 

@@ -6,7 +6,7 @@ import tempfile
 import unittest
 import warnings
 
-from compare import command_json, python_json
+from command import command_json, python_json
 
 import imukit
 
