@@ -3,14 +3,15 @@
 #include "extension.h"
 
 static PyMethodDef *const functions[] = {
-    allan_functions,    drift_functions,    grade_functions,  identify_functions,
-    info_functions,     model_functions,    record_functions, sensor_functions,
+    allan_functions,    design_functions,   drift_functions,   grade_functions,  identify_functions,
+    info_functions,     model_functions,    physics_functions, record_functions, sensor_functions,
     simulate_functions, spectrum_functions, unit_functions,
 };
 
 /* Types, exceptions and constants. */
 static bool (*const additions[])(PyObject *module) = {
-    add_errors, add_result, add_record, add_identify, add_model, add_sensor, add_simulate,
+    add_errors, add_result, add_record, add_identify,
+    add_model,  add_design, add_sensor, add_simulate,
 };
 
 static struct PyModuleDef definition = {

@@ -4,6 +4,7 @@
 Numbers are in SI units: rad/s, m/s^2, s, K, T. Wherever a number is an argument, a text with a unit
 may stand for it: "0.1 deg/s".
 """
+from . import allantools, physics
 from ._allan import AllanCurve, AllanResult, allan
 from ._core import Error, FileError, convert_unit, normal_gravity
 from ._core import version as __version__
@@ -48,6 +49,7 @@ __all__ = [
     "SpectrumLine",
     "SpectrumResult",
     "allan",
+    "allantools",
     "convert_unit",
     "devices",
     "drift",
@@ -55,6 +57,7 @@ __all__ = [
     "identify",
     "info",
     "normal_gravity",
+    "physics",
     "read_log",
     "simulate",
     "simulate_blocks",
