@@ -27,6 +27,8 @@
 /** Raise imukit.Error, or MemoryError, FileNotFoundError's kind imukit.FileError, with the message
  *  of an error. @param source  name of the file that it is about; NULL: none. @return NULL */
 PyObject *raise_error(const imk_error *error, const char *source);
+/** The same with another message. @return NULL */
+PyObject *raise_message(const imk_error *error, const char *message);
 /** Raise what a job failed with: its finding that says why, else the error. @return NULL */
 PyObject *raise_failure(const imk_findings *findings, const imk_error *error, const char *record,
                         const char *model);
@@ -146,6 +148,8 @@ bool settings_read(PyObject *dictionary, size_t count, const setting *rows, void
     settings_read(dictionary, sizeof(rows) / sizeof(rows)[0], rows, structure)
 /** A number in SI units, or a text with a unit; false with an exception. */
 bool quantity_read(PyObject *object, const char *name, const char *unit, double *value);
+/** A unit of a text; false with an exception. @param name  in the message; NULL: none */
+bool unit_read(PyObject *object, const char *name, imk_unit *unit);
 /** @} */
 
 /** A model with the text of its file. */
@@ -153,6 +157,8 @@ typedef struct model_object {
     PyObject_HEAD imk_model model;
     imk_document *document; /* NULL: none */
 } model_object;
+/** Is it a model? */
+bool is_model(PyObject *object);
 /** The model of an argument; NULL with an exception. It may change when the lock is let go: take a
  *  copy for work without it. */
 model_object *model_of(PyObject *object);
@@ -166,25 +172,38 @@ bool add_model(PyObject *module);
 bool add_design(PyObject *module);
 /** Add the type of sensors that are stepped to the module. */
 bool add_sensor(PyObject *module);
+/** Add the constants of calibration to the module. */
+bool add_calibrate(PyObject *module);
 /** Add the constants of identification to the module. */
 bool add_identify(PyObject *module);
 
+/** The motion of imukit.Motion, which the object keeps; NULL with an exception. */
+const struct imk_motion_file *motion_of(PyObject *object);
 /** Add the type of simulations to the module. */
 bool add_simulate(PyObject *module);
 
 /** Functions of the module, by their files; each ends with a row of zeros. */
 extern PyMethodDef allan_functions[];
+<<<<<<< HEAD
 extern PyMethodDef design_functions[];
+=======
+extern PyMethodDef calibrate_functions[];
+>>>>>>> origin/main
 extern PyMethodDef drift_functions[];
 extern PyMethodDef grade_functions[];
 extern PyMethodDef identify_functions[];
 extern PyMethodDef info_functions[];
 extern PyMethodDef model_functions[];
+<<<<<<< HEAD
 extern PyMethodDef physics_functions[];
+=======
+extern PyMethodDef navigate_functions[];
+>>>>>>> origin/main
 extern PyMethodDef record_functions[];
 extern PyMethodDef sensor_functions[];
 extern PyMethodDef simulate_functions[];
 extern PyMethodDef spectrum_functions[];
+extern PyMethodDef tune_functions[];
 extern PyMethodDef unit_functions[];
 
 #endif

@@ -107,6 +107,11 @@ static PyObject *raise(const imk_error *error, const char *message, PyObject *fi
     return NULL;
 }
 
+PyObject *raise_message(const imk_error *error, const char *message)
+{
+    return raise(error, message, NULL);
+}
+
 PyObject *raise_error(const imk_error *error, const char *source)
 {
     char text[1200];

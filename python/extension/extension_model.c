@@ -19,9 +19,14 @@ static void model_free(PyObject *self)
     Py_DECREF(type);
 }
 
+bool is_model(PyObject *object)
+{
+    return Py_TYPE(object) == (PyTypeObject *)model_type;
+}
+
 model_object *model_of(PyObject *object)
 {
-    if (Py_TYPE(object) == (PyTypeObject *)model_type)
+    if (is_model(object))
         return (model_object *)object;
     PyErr_SetString(PyExc_TypeError, "expected a model");
     return NULL;

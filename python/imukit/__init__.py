@@ -6,25 +6,29 @@ may stand for it: "0.1 deg/s".
 """
 from . import allantools, physics
 from ._allan import AllanCurve, AllanResult, allan
-from ._core import Error, FileError, convert_unit, normal_gravity
-from ._core import version as __version__
+from ._calibrate import CalibrateResult, Parameter, PoseResidual, calibrate
+from ._core import Error, FileError, convert_unit, normal_gravity, version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
 from ._estimates import Estimate
 from ._grade import GradeResult, grade
-from ._identify import IdentifyResult, identify
+from ._identify import (IdentifyResult, RecordPlan, identify, identify_curve, identify_devices,
+                        identify_runs, plan_record)
 from ._info import InfoResult, info
 from ._log import Log, read_log
 from ._model import Device, Model, devices
 from ._motion import Motion
+from ._navigate import Innovations, NavigateResult, Track, navigate
 from ._results import DataWarning, Fields, Finding, Result
 from ._sensor import Sensor
 from ._simulate import Blocks, simulate, simulate_blocks, simulate_runs, simulate_truth
 from ._spectrum import SpectrumCurve, SpectrumLine, SpectrumResult, spectrum
+from ._tune import FilterAnswer, TuneResult, tune
 
 __all__ = [
     "AllanCurve",
     "AllanResult",
     "Blocks",
+    "CalibrateResult",
     "DataWarning",
     "Device",
     "DriftGrowth",
@@ -36,32 +40,47 @@ __all__ = [
     "Estimate",
     "Fields",
     "FileError",
+    "FilterAnswer",
     "Finding",
     "GradeResult",
     "IdentifyResult",
     "InfoResult",
+    "Innovations",
     "Log",
     "Model",
     "Motion",
+    "NavigateResult",
+    "Parameter",
+    "PoseResidual",
+    "RecordPlan",
     "Result",
     "Sensor",
     "SpectrumCurve",
     "SpectrumLine",
     "SpectrumResult",
+    "Track",
+    "TuneResult",
     "allan",
     "allantools",
+    "calibrate",
     "convert_unit",
     "devices",
     "drift",
     "grade",
     "identify",
+    "identify_curve",
+    "identify_devices",
+    "identify_runs",
     "info",
+    "navigate",
     "normal_gravity",
     "physics",
+    "plan_record",
     "read_log",
     "simulate",
     "simulate_blocks",
     "simulate_runs",
     "simulate_truth",
     "spectrum",
+    "tune",
 ]

@@ -52,7 +52,7 @@ static void show_time(const imk_tune_model *r, int kind, size_t t, imk_result *r
     for (size_t s = 0; s < tuning->source_count; s++) {
         const double share = tuning->answer[kind].share[s * tuning->time_count + t];
         if (fabs(share) >= 1e-4)
-            imk_result_number(result, tuning->source[s].name, share);
+            imk_result_number(result, imk_result_key(result, "%s", tuning->source[s].name), share);
     }
     imk_result_end(result);
     imk_result_end(result);
@@ -311,9 +311,25 @@ void imk_tune_verdict(const imk_tune_model *r, char *text, size_t size)
              ". With scale factors among the states of the filter it is %.3g to %.3g", low, high);
 }
 
-void imk_show_tune(const imk_tune_model *r, imk_result *result)
+/* What was assumed, term by term. */
+static void show_assumed(const imk_unstated *assumed, imk_result *result)
+{
+    imk_result_array(result, "assumed");
+    for (size_t i = 0; assumed && i < assumed->count; i++)
+        imk_result_text(result, NULL, assumed->term[i].text);
+    imk_result_end(result);
+    for (size_t i = 0; assumed && i < assumed->count; i++) {
+        const imk_unstated_term *term = &assumed->term[i];
+        imk_result_line(result, "assumed: %s %.3g %s (%s)", term->text,
+                        term->typical / imk_unit_of(term->unit).scale, term->unit,
+                        imk_grade_table(term->grade) ? imk_grade_table(term->grade)->name : "-");
+    }
+}
+
+void imk_show_tune(const imk_tune_model *r, const imk_unstated *assumed, imk_result *result)
 {
     const imk_filter_tuning *tuning = r->tuning;
+    show_assumed(assumed, result);
     show_data(r, result);
     imk_result_title(result, "Noise of a filter", "%s on %zu motion%s", r->name,
                      r->settings.tuning.motion_count,
