@@ -168,6 +168,8 @@ PyObject *make_model(const imk_model *model, imk_document *document);
 /** Add the type to the module. */
 bool add_model(PyObject *module);
 
+/** Add the type of designs of instruments to the module. */
+bool add_design(PyObject *module);
 /** Add the type of sensors that are stepped to the module. */
 bool add_sensor(PyObject *module);
 /** Add the constants of calibration to the module. */
@@ -183,6 +185,7 @@ bool add_simulate(PyObject *module);
 /** Functions of the module, by their files; each ends with a row of zeros. */
 extern PyMethodDef allan_functions[];
 extern PyMethodDef calibrate_functions[];
+extern PyMethodDef design_functions[];
 extern PyMethodDef drift_functions[];
 extern PyMethodDef evaluate_functions[];
 extern PyMethodDef grade_functions[];
@@ -190,6 +193,7 @@ extern PyMethodDef identify_functions[];
 extern PyMethodDef info_functions[];
 extern PyMethodDef model_functions[];
 extern PyMethodDef navigate_functions[];
+extern PyMethodDef physics_functions[];
 extern PyMethodDef record_functions[];
 extern PyMethodDef sensor_functions[];
 extern PyMethodDef simulate_functions[];

@@ -4,6 +4,7 @@
 Numbers are in SI units: rad/s, m/s^2, s, K, T. Wherever a number is an argument, a text with a unit
 may stand for it: "0.1 deg/s".
 """
+from . import allantools, physics
 from ._allan import AllanCurve, AllanResult, allan
 from ._calibrate import CalibrateResult, Parameter, PoseResidual, calibrate
 from ._core import Error, FileError, convert_unit, normal_gravity, version as __version__
@@ -63,6 +64,7 @@ __all__ = [
     "Track",
     "TuneResult",
     "allan",
+    "allantools",
     "calibrate",
     "convert_unit",
     "devices",
@@ -76,6 +78,7 @@ __all__ = [
     "info",
     "navigate",
     "normal_gravity",
+    "physics",
     "plan_record",
     "read_log",
     "simulate",
