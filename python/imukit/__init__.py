@@ -5,6 +5,7 @@ Numbers are in SI units: rad/s, m/s^2, s, K, T. Wherever a number is an argument
 may stand for it: "0.1 deg/s".
 """
 from ._allan import AllanCurve, AllanResult, allan
+from ._compensate import CompensatedLog, compensate, convert
 from ._core import Error, FileError, convert_unit, normal_gravity
 from ._core import version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
@@ -15,6 +16,7 @@ from ._info import InfoResult, info
 from ._log import Log, read_log
 from ._model import Device, Model, devices
 from ._motion import Motion
+from ._parameters import ParameterText, parameter_formats
 from ._results import DataWarning, Fields, Finding, Result
 from ._sensor import Sensor
 from ._simulate import Blocks, simulate, simulate_blocks, simulate_runs, simulate_truth
@@ -24,6 +26,7 @@ __all__ = [
     "AllanCurve",
     "AllanResult",
     "Blocks",
+    "CompensatedLog",
     "DataWarning",
     "Device",
     "DriftGrowth",
@@ -42,12 +45,15 @@ __all__ = [
     "Log",
     "Model",
     "Motion",
+    "ParameterText",
     "Result",
     "Sensor",
     "SpectrumCurve",
     "SpectrumLine",
     "SpectrumResult",
     "allan",
+    "compensate",
+    "convert",
     "convert_unit",
     "devices",
     "drift",
@@ -55,6 +61,7 @@ __all__ = [
     "identify",
     "info",
     "normal_gravity",
+    "parameter_formats",
     "read_log",
     "simulate",
     "simulate_blocks",
