@@ -327,7 +327,7 @@ static int start(const physics_options *o, const char *operand)
     p.settings.instrument = p.file.instrument;
     p.settings.design = p.file.design;
     if (code < 0)
-        code = physics_input_make(o, &p.settings.input);
+        code = physics_input_make(o, &p.settings);
     if (code < 0) {
         p.model = command_memory(NULL, sizeof *p.model);
         imk_instrument_reduce(p.file.instrument, p.file.design, p.model);

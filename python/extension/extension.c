@@ -3,10 +3,10 @@
 #include "extension.h"
 
 static PyMethodDef *const functions[] = {
-    allan_functions,  compensate_functions, parameter_functions, drift_functions,
-    grade_functions,  identify_functions,   info_functions,      model_functions,
-    record_functions, sensor_functions,     simulate_functions,  spectrum_functions,
-    unit_functions,
+    allan_functions,     compensate_functions, drift_functions,  grade_functions,
+    identify_functions,  info_functions,       model_functions,  navigate_functions,
+    parameter_functions, record_functions,     sensor_functions, simulate_functions,
+    spectrum_functions,  unit_functions,
 };
 
 /* Types, exceptions and constants. */

@@ -160,6 +160,8 @@ bool settings_read(PyObject *dictionary, size_t count, const setting *rows, void
     settings_read(dictionary, sizeof(rows) / sizeof(rows)[0], rows, structure)
 /** A number in SI units, or a text with a unit; false with an exception. */
 bool quantity_read(PyObject *object, const char *name, const char *unit, double *value);
+/** A unit of a text; false with an exception. @param name  in the message; NULL: none */
+bool unit_read(PyObject *object, const char *name, imk_unit *unit);
 /** @} */
 
 /** A model with the text of its file. */
@@ -192,6 +194,7 @@ extern PyMethodDef grade_functions[];
 extern PyMethodDef identify_functions[];
 extern PyMethodDef info_functions[];
 extern PyMethodDef model_functions[];
+extern PyMethodDef navigate_functions[];
 extern PyMethodDef parameter_functions[];
 extern PyMethodDef record_functions[];
 extern PyMethodDef sensor_functions[];

@@ -6,16 +6,17 @@ may stand for it: "0.1 deg/s".
 """
 from ._allan import AllanCurve, AllanResult, allan
 from ._compensate import CompensatedLog, compensate, convert
-from ._core import Error, FileError, convert_unit, normal_gravity
-from ._core import version as __version__
+from ._core import Error, FileError, convert_unit, normal_gravity, version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
 from ._estimates import Estimate
 from ._grade import GradeResult, grade
-from ._identify import IdentifyResult, identify
+from ._identify import (IdentifyResult, RecordPlan, identify, identify_curve, identify_devices,
+                        identify_runs, plan_record)
 from ._info import InfoResult, info
 from ._log import Log, read_log
 from ._model import Device, Model, devices
 from ._motion import Motion
+from ._navigate import Innovations, NavigateResult, Track, navigate
 from ._parameters import ParameterText, parameter_formats
 from ._results import DataWarning, Fields, Finding, Result
 from ._sensor import Sensor
@@ -42,15 +43,19 @@ __all__ = [
     "GradeResult",
     "IdentifyResult",
     "InfoResult",
+    "Innovations",
     "Log",
     "Model",
     "Motion",
+    "NavigateResult",
     "ParameterText",
+    "RecordPlan",
     "Result",
     "Sensor",
     "SpectrumCurve",
     "SpectrumLine",
     "SpectrumResult",
+    "Track",
     "allan",
     "compensate",
     "convert",
@@ -59,9 +64,14 @@ __all__ = [
     "drift",
     "grade",
     "identify",
+    "identify_curve",
+    "identify_devices",
+    "identify_runs",
     "info",
+    "navigate",
     "normal_gravity",
     "parameter_formats",
+    "plan_record",
     "read_log",
     "simulate",
     "simulate_blocks",

@@ -33,8 +33,10 @@ def plain_value(found: Any) -> Any:
 
 def estimate_of(found: dict[str, Any]) -> Estimate:
     """Of an object with value, sigma, lower, upper."""
-    return Estimate(*(plain_value(found.get(key)) for key in ("value", "sigma", "lower", "upper")),
-                    bool(found.get("present", True)), found["value"]["unit"])
+    unit = found["unit"] if "unit" in found else found["value"]["unit"]
+    value, sigma, lower, upper = (plain_value(found.get(key))
+                                  for key in ("value", "sigma", "lower", "upper"))
+    return Estimate(value, sigma, lower, upper, bool(found.get("present", True)), unit)
 
 
 def estimates_of(terms: dict[str, Any]) -> dict[str, Estimate]:

@@ -18,7 +18,7 @@ class InfoResult(Result):
     def rate(self) -> float:
         """Sampling rate [Hz]: 1 over the median interval; NaN where it is not known."""
         interval = (self._data["result"]["record"] or {}).get("interval")
-        seconds = interval["value"] if interval else None
+        seconds: float | None = interval["value"] if interval else None
         return 1 / seconds if seconds else float("nan")
 
     @property

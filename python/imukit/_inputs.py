@@ -20,12 +20,13 @@ def is_path(data: Data) -> bool:
 
 
 def open_record(data: Data, rate: float | str | None, columns: str | Sequence[str] | None,
-                log: Mapping[str, Any] | None = None) -> Any:
+                log: Mapping[str, Any] | None = None, name: str = "the record") -> Any:
     """The record of `data`.
 
     rate     sampling rate [Hz], or a text such as "200 Hz"
     columns  names of the columns, with units in brackets: "gyro_x [deg/s]"; without, SI
     log      options for reading a log
+    name     in messages, where it is no file
     """
     if is_path(data):
         return _core.open_log(data, log_options(rate, columns, log))
@@ -44,7 +45,7 @@ def open_record(data: Data, rate: float | str | None, columns: str | Sequence[st
     if names is None:
         names = _names(_count(arrays))
     seconds = 0.0 if rate is None else si("rate", rate, "Hz")
-    return _core.arrays("the record", tuple(names), arrays, seconds)
+    return _core.arrays(name, tuple(names), arrays, seconds)
 
 
 def log_options(rate: Any, columns: Any, log: Mapping[str, Any] | None) -> dict[str, Any]:

@@ -19,7 +19,7 @@ def named_models(models: ModelLike | Sequence[ModelLike]) -> tuple[tuple[str, An
     """Models with the names that results show."""
     if isinstance(models, Sequence) and not isinstance(models, str):
         return tuple(named_model(model) for model in models)
-    return (named_model(models),)  # type: ignore[arg-type]
+    return (named_model(models),)
 
 
 def named_model(model: ModelLike) -> tuple[str, Any]:
