@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Logs that are compensated and converted, and models in the formats of other programs."""
 import math
+import os
 import pathlib
 import subprocess
 import tempfile
@@ -8,6 +9,7 @@ import unittest
 
 import imukit
 
+ENVIRONMENT = {k: v for k, v in os.environ.items() if k != "LD_PRELOAD"}  # of sanitizers
 COMMAND = pathlib.Path(__file__).resolve().parents[2] / "build" / "imukit"
 
 
@@ -62,7 +64,7 @@ class Compensated(unittest.TestCase):
             for line in ("simulate unit.yaml --rate 50Hz --duration 100s -o raw.csv",
                          "compensate raw.csv unit.yaml --flags -o clean.csv"):
                 subprocess.run([COMMAND, *line.split()], cwd=folder, check=True,
-                               capture_output=True)
+                               capture_output=True, env=ENVIRONMENT)
             due = imukit.read_log(folder / "clean.csv", any_columns=True)
             found = imukit.compensate(folder / "raw.csv", folder / "unit.yaml", flags=True)
         self.assertEqual(list(found), list(due))
