@@ -7,6 +7,7 @@ may stand for it: "0.1 deg/s".
 from . import allantools, physics
 from ._allan import AllanCurve, AllanResult, allan
 from ._calibrate import CalibrateResult, Parameter, PoseResidual, calibrate
+from ._compensate import CompensatedLog, compensate, convert
 from ._core import Error, FileError, convert_unit, normal_gravity, version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
 from ._estimates import Estimate
@@ -19,6 +20,7 @@ from ._log import Log, read_log
 from ._model import Device, Model, devices
 from ._motion import Motion
 from ._navigate import Innovations, NavigateResult, Track, navigate
+from ._parameters import ParameterText, parameter_formats
 from ._results import DataWarning, Fields, Finding, Result
 from ._sensor import Sensor
 from ._simulate import Blocks, simulate, simulate_blocks, simulate_runs, simulate_truth
@@ -30,6 +32,7 @@ __all__ = [
     "AllanResult",
     "Blocks",
     "CalibrateResult",
+    "CompensatedLog",
     "DataWarning",
     "Device",
     "DriftGrowth",
@@ -54,6 +57,7 @@ __all__ = [
     "Motion",
     "NavigateResult",
     "Parameter",
+    "ParameterText",
     "PoseResidual",
     "RecordPlan",
     "Result",
@@ -66,6 +70,8 @@ __all__ = [
     "allan",
     "allantools",
     "calibrate",
+    "compensate",
+    "convert",
     "convert_unit",
     "devices",
     "drift",
@@ -78,6 +84,7 @@ __all__ = [
     "info",
     "navigate",
     "normal_gravity",
+    "parameter_formats",
     "physics",
     "plan_record",
     "read_log",
