@@ -2,6 +2,8 @@
 /* The noise of a filter: the numbers, how consistent they are, and what makes the errors. */
 #include "tune_show_internal.h"
 
+#include "report/show/drift/unstated_show_internal.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -86,7 +88,7 @@ static void show_answer(const imk_tune_model *r, int kind, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_data(const imk_tune_model *r, imk_result *result)
+static void show_data(const imk_tune_model *r, const imk_unstated *assumed, imk_result *result)
 {
     const imk_filter_tuning *tuning = r->tuning;
     const imk_filter_tuning_settings *s = &r->settings.tuning;
@@ -110,6 +112,7 @@ static void show_data(const imk_tune_model *r, imk_result *result)
     for (int kind = 0; kind < IMK_FILTER_ANSWERS; kind++)
         show_answer(r, kind, result);
     imk_result_end(result);
+    imki_show_assumed_data(assumed, result);
     imk_result_end(result);
 }
 
@@ -314,10 +317,6 @@ void imk_tune_verdict(const imk_tune_model *r, char *text, size_t size)
 /* What was assumed, term by term. */
 static void show_assumed(const imk_unstated *assumed, imk_result *result)
 {
-    imk_result_array(result, "assumed");
-    for (size_t i = 0; assumed && i < assumed->count; i++)
-        imk_result_text(result, NULL, assumed->term[i].text);
-    imk_result_end(result);
     for (size_t i = 0; assumed && i < assumed->count; i++) {
         const imk_unstated_term *term = &assumed->term[i];
         imk_result_line(result, "assumed: %s %.3g %s (%s)", term->text,
@@ -330,7 +329,7 @@ void imk_show_tune(const imk_tune_model *r, const imk_unstated *assumed, imk_res
 {
     const imk_filter_tuning *tuning = r->tuning;
     show_assumed(assumed, result);
-    show_data(r, result);
+    show_data(r, assumed, result);
     imk_result_title(result, "Noise of a filter", "%s on %zu motion%s", r->name,
                      r->settings.tuning.motion_count,
                      r->settings.tuning.motion_count > 1 ? "s" : "");
