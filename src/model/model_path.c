@@ -292,7 +292,7 @@ static imk_status get_evidence(const imk_model *model, int kind, const char *pat
             continue;
         *numbers = (imk_model_numbers){
             .unit = unit_of(&p), .axes = triad->axis_count, .columns = bound ? 1 : 2};
-        double value[2 * IMK_AXES_MAX];
+        double value[2 * IMK_AXES_MAX] = {0};
         for (int k = 0; k < triad->axis_count; k++) {
             value[k * numbers->columns] = bound ? of->upper.value[k] : of->lower.value[k];
             if (!bound)
@@ -321,7 +321,7 @@ imk_status imk_model_numbers_get(const imk_model *model, const char *path,
     if (triad && p.element >= elements(&p, triad))
         return refuse_missing(path, "an element that the list has", error);
     *numbers = (imk_model_numbers){.unit = unit_of(&p)};
-    if (p.field->shape == IMKI_POLYNOMIAL)
+    if (triad && p.field->shape == IMKI_POLYNOMIAL)
         get_polynomial(&p, triad, numbers);
     else
         get_field(&p, model, numbers);
