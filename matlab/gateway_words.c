@@ -3,6 +3,8 @@
  * values, 'gyro_unit', 'deg/s' as --gyro-unit=deg/s. Numbers are in SI units. */
 #include "gateway.h"
 
+#include "shell/command.h"
+
 #include "imukit/names.h"
 
 #include <ctype.h>
@@ -310,11 +312,14 @@ static bool is_left_out(const char *name)
 {
     static const char *const always[] = {"json", "strict", "help", "plan"};
     static const char *const simulating[] = {"output", "runs", "format", "decimals"};
+    static const char *const drifting[] = {"output", "shard"}; /* they catch signals */
     bool out = false;
     for (size_t k = 0; k < sizeof always / sizeof always[0]; k++)
         out = out || strcmp(name, always[k]) == 0;
     for (size_t k = 0; k < sizeof simulating / sizeof simulating[0]; k++)
         out = out || (gateway_now()->log_due && strcmp(name, simulating[k]) == 0);
+    for (size_t k = 0; k < sizeof drifting / sizeof drifting[0]; k++)
+        out = out || (gateway_now()->verb == &drift_verb && strcmp(name, drifting[k]) == 0);
     return out;
 }
 

@@ -293,6 +293,7 @@ function test_refusals ()
   refused ('whole number', u, 'simulate', 'AHRS', 'rate', 9, 'duration', 1, 'seed', -1);
   refused ('of the command only', u, 'simulate', 'AHRS', 'output', 'x.csv');
   refused ('of the command only', u, 'allan', 'log.csv', 'json', true);
+  refused ('of the command only', u, 'drift', 'AHRS', 'output', 'x.h5');
   refused ('name a file', u, 'identify', 'log.csv', 'output', '-');
   refused ('--confidence', u, 'identify', 'log.csv', 'confidence', 2);
   refused ('procedure', u, 'calibrate', 'log.csv');

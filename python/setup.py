@@ -36,7 +36,7 @@ class build_with_archives(build_ext):
             subprocess.run(["cmake", "-S", ROOT, "-B", BUILD, "-D", "CMAKE_BUILD_TYPE=Release"],
                            check=True)
         subprocess.run(["cmake", "--build", BUILD, "-j", str(os.cpu_count() or 2), "--target",
-                        *ARCHIVES], check=True)
+                        ARCHIVES[0]], check=True)
         super().run()
 
 

@@ -16,7 +16,7 @@ cmake --build "$build" -j "$(nproc)" --target octave imukit-command >"$out/build
 
 octave="timeout 300 octave-cli --no-gui --quiet --no-init-file --no-history"
 run() { # FILE ARGUMENT...
-    $octave "$@" 2>"$out/run.log" || { cat "$out/run.log"; exit 1; }
+    $octave "$@" 2>"$out/run.log" </dev/null || { cat "$out/run.log"; exit 1; }
 }
 run matlab/test_gateway.m "$build" ../shared/data
 run matlab/test_imusensor.m "$build"
@@ -28,5 +28,5 @@ awk '/^<!-- not run: tools\/check octave runs it -->$/ { due = 1; next }
      inside { print }
      due && /^```matlab$/ { inside = 1 }' docs/matlab.md >"$out/page.m"
 [ "$(wc -l <"$out/page.m")" -gt 20 ] || { echo "docs/matlab.md has no examples"; exit 1; }
-(cd "$out" && $octave page.m) >"$out/page.log" 2>&1 || { tail -n 20 "$out/page.log"; exit 1; }
+(cd "$out" && $octave page.m) >"$out/page.log" 2>&1 </dev/null || { tail -n 20 "$out/page.log"; exit 1; }
 echo "$(grep -c . "$out/page.m") lines of docs/matlab.md"

@@ -3,6 +3,7 @@
  * matters, and the library keeps it. */
 #define _POSIX_C_SOURCE 200809L
 #include "campaign_job.h"
+#include "shell/voice.h"
 
 #include <signal.h>
 #include <stdlib.h>
@@ -138,16 +139,6 @@ int campaign_job_open(campaign_job *job, const imk_campaign *campaign, uint64_t 
 
 /* ---- at work ---- */
 
-bool campaign_job_take(campaign_job *job, campaign_batch *batch)
-{
-    pthread_mutex_lock(&job->mutex);
-    const bool there = !job->failed && job->next < job->batch_count;
-    if (there)
-        *batch = job->batches[job->next++];
-    pthread_mutex_unlock(&job->mutex);
-    return there;
-}
-
 void campaign_job_fail(campaign_job *job, const imk_error *error)
 {
     pthread_mutex_lock(&job->mutex);
@@ -155,6 +146,21 @@ void campaign_job_fail(campaign_job *job, const imk_error *error)
         job->error = *error;
     job->failed = true;
     pthread_mutex_unlock(&job->mutex);
+}
+
+bool campaign_job_take(campaign_job *job, campaign_batch *batch)
+{
+    imk_error error;
+    if (voice_interrupted()) {
+        imk_error_set(&error, IMK_ERROR_CANCELLED, NULL, NULL, NULL);
+        campaign_job_fail(job, &error);
+    }
+    pthread_mutex_lock(&job->mutex);
+    const bool there = !job->failed && job->next < job->batch_count;
+    if (there)
+        *batch = job->batches[job->next++];
+    pthread_mutex_unlock(&job->mutex);
+    return there;
 }
 
 void campaign_job_bring(campaign_job *job, campaign_batch batch, const double *values)

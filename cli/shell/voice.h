@@ -12,9 +12,9 @@
 typedef enum voice_kind { VOICE_NOTE, VOICE_WARNING, VOICE_FAILURE } voice_kind;
 
 /* A message, without control sequences.
- * @param verb  that speaks; NULL: none yet
+ * @param name  of the verb that speaks; NULL: none yet
  * @param code  of a warning; of a failure "usage" or "failed" */
-void voice_say(voice_kind kind, const char *verb, const char *code, const char *text);
+void voice_say(voice_kind kind, const char *name, const char *code, const char *text);
 /* What to type next. */
 void voice_advise(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* A result, as JSON or text. */

@@ -108,21 +108,6 @@ static int open_model(tune_work *w)
     return code;
 }
 
-/* What was assumed, term by term. */
-static void show_assumed(const tune_work *w, imk_result *result)
-{
-    imk_result_array(result, "assumed");
-    for (size_t i = 0; i < w->assumed.count; i++)
-        imk_result_text(result, NULL, w->assumed.term[i].text);
-    imk_result_end(result);
-    for (size_t i = 0; i < w->assumed.count; i++) {
-        const imk_unstated_term *term = &w->assumed.term[i];
-        imk_result_line(result, "assumed: %s %.3g %s (%s)", term->text,
-                        term->typical / imk_unit_of(term->unit).scale, term->unit,
-                        imk_grade_table(term->grade) ? imk_grade_table(term->grade)->name : "-");
-    }
-}
-
 /* ---- the numbers as a file ---- */
 
 static imk_filter_answer_kind answer_of(const tune_options *o)
@@ -186,8 +171,7 @@ static int show(const tune_work *w)
     if (code >= 0)
         return code;
     imk_result *result = show_begin("tune");
-    show_assumed(w, result);
-    imk_show_tune(w->r, result);
+    imk_show_tune(w->r, &w->assumed, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (!o->output)
         imk_result_line(result, "\nNext: write the numbers for a program with --to FORMAT -o FILE");

@@ -50,8 +50,8 @@ typedef struct imk_physics_log_settings {
 } imk_physics_log_settings;
 
 /** Check the input: angular rates and specific forces up to 1e6 [rad/s], [m/s^2]; temperatures
- * above 0 and up to 1e4 [K], also at the end of `duration`; a sine with four samples a cycle at
- * least. The jobs do so.
+ *  above 0 and up to 1e4 [K], also at the end of `duration`; a sine with at least four samples a
+ *  cycle. The jobs do so.
  *  @return IMK_ERROR_RANGE with the field "angular_rate", "specific_force", "frequency",
  *          "temperature" or "temperature_rate" */
 IMK_API imk_status imk_physics_input_check(const imk_physics_log_settings *settings,

@@ -24,7 +24,7 @@
  *  sample adds nothing to the integral that is quantized; hysteresis leaves out the temperature;
  *  noise goes on as always.
  *
- *  Noise is made 512 samples ahead, so one step in 512 takes longer: about 50 us for a sensor.
+ *  Noise is made 512 samples ahead, so one step in 512 takes longer: about 30 us for a sensor.
  */
 #ifndef IMUKIT_SENSOR_H
 #define IMUKIT_SENSOR_H

@@ -211,8 +211,10 @@ typedef struct imk_drift_shown {
 /** Show the growth of errors, budgets, runs, the answer to the requirement, and figures. */
 IMK_API void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *shown,
                             imk_result *result);
-/** Show the noise of a filter, how consistent it is, what makes the errors, and a figure. */
-IMK_API void imk_show_tune(const imk_tune_model *r, imk_result *result);
+/** Show the noise of a filter, how consistent it is, what makes the errors, and a figure.
+ *  @param assumed  what was assumed of the model (imk_model_assume_class()); NULL: nothing was */
+IMK_API void imk_show_tune(const imk_tune_model *r, const imk_unstated *assumed,
+                           imk_result *result);
 /** Write why no constant noise describes the errors; "" where one does.
  *  @param size  of `text` [bytes] */
 IMK_API void imk_tune_verdict(const imk_tune_model *r, char *text, size_t size);

@@ -3,14 +3,16 @@
 #include "extension.h"
 
 static PyMethodDef *const functions[] = {
-    allan_functions,    calibrate_functions, drift_functions, evaluate_functions, grade_functions,
-    identify_functions, info_functions,      model_functions, record_functions,   sensor_functions,
-    simulate_functions, spectrum_functions,  unit_functions,
+    allan_functions,    calibrate_functions, compensate_functions, design_functions,
+    drift_functions,    evaluate_functions,  grade_functions,      identify_functions,
+    info_functions,     model_functions,     navigate_functions,   parameter_functions,
+    physics_functions,  record_functions,    sensor_functions,     simulate_functions,
+    spectrum_functions, tune_functions,      unit_functions,
 };
 
 /* Types, exceptions and constants. */
 static bool (*const additions[])(PyObject *module) = {
-    add_errors,   add_result, add_record, add_calibrate,
+    add_errors,   add_result, add_record, add_calibrate, add_design,
     add_identify, add_model,  add_sensor, add_simulate,
 };
 

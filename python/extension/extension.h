@@ -102,6 +102,20 @@ record *record_begin(PyObject *object);
 void record_end(record *r);
 /** Read settings of a log, as settings_read(). */
 bool log_settings_read(PyObject *dictionary, imk_log_settings *settings);
+/** A log in memory as a tuple of its columns and counts, which takes it over: it is in memory of
+ *  PyMem_Calloc(); NULL with an exception. */
+PyObject *describe_log(imk_log *log);
+/** A log that grows while a job writes its rows; `sink` points into it. */
+typedef struct log_sink {
+    imk_record_sink sink;
+    imk_log *log;
+    size_t capacity;
+} log_sink;
+/** @return false with an exception */
+bool log_sink_begin(log_sink *s);
+/** The log as a tuple (describe_log()), with what the source found of its times; NULL: an exception
+ *  is set, or is to be. @param source  NULL: the job failed, and there is no log */
+PyObject *log_sink_end(log_sink *s, const imk_record_source *source);
 /** Make a record of a reader and take it over. @param name  of the log. @return NULL with an
  *  exception; the reader is then closed */
 PyObject *record_of_reader(void *reader, const char *name);
@@ -151,6 +165,8 @@ bool settings_read(PyObject *dictionary, size_t count, const setting *rows, void
     settings_read(dictionary, sizeof(rows) / sizeof(rows)[0], rows, structure)
 /** A number in SI units, or a text with a unit; false with an exception. */
 bool quantity_read(PyObject *object, const char *name, const char *unit, double *value);
+/** A unit of a text; false with an exception. @param name  in the message; NULL: none */
+bool unit_read(PyObject *object, const char *name, imk_unit *unit);
 /** @} */
 
 /** A model with the text of its file. */
@@ -169,6 +185,8 @@ PyObject *make_model(const imk_model *model, imk_document *document);
 /** Add the type to the module. */
 bool add_model(PyObject *module);
 
+/** Add the type of designs of instruments to the module. */
+bool add_design(PyObject *module);
 /** Add the type of sensors that are stepped to the module. */
 bool add_sensor(PyObject *module);
 /** Add the constants of calibration to the module. */
@@ -176,22 +194,30 @@ bool add_calibrate(PyObject *module);
 /** Add the constants of identification to the module. */
 bool add_identify(PyObject *module);
 
+/** The motion of imukit.Motion, which the object keeps; NULL with an exception. */
+const struct imk_motion_file *motion_of(PyObject *object);
 /** Add the type of simulations to the module. */
 bool add_simulate(PyObject *module);
 
 /** Functions of the module, by their files; each ends with a row of zeros. */
 extern PyMethodDef allan_functions[];
 extern PyMethodDef calibrate_functions[];
+extern PyMethodDef compensate_functions[];
+extern PyMethodDef design_functions[];
 extern PyMethodDef drift_functions[];
 extern PyMethodDef evaluate_functions[];
 extern PyMethodDef grade_functions[];
 extern PyMethodDef identify_functions[];
 extern PyMethodDef info_functions[];
 extern PyMethodDef model_functions[];
+extern PyMethodDef navigate_functions[];
+extern PyMethodDef parameter_functions[];
+extern PyMethodDef physics_functions[];
 extern PyMethodDef record_functions[];
 extern PyMethodDef sensor_functions[];
 extern PyMethodDef simulate_functions[];
 extern PyMethodDef spectrum_functions[];
+extern PyMethodDef tune_functions[];
 extern PyMethodDef unit_functions[];
 
 #endif

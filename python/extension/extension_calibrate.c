@@ -206,7 +206,6 @@ static void session_free(session *b)
     }
     if (b) {
         imk_calibrate_log_free(b->found);
-        motion_free(&b->motion);
         PyMem_Free(b->known);
         Py_XDECREF(b->findings);
     }
@@ -358,8 +357,7 @@ static PyObject *calibrate(PyObject *module, PyObject *args)
         good = names[k] != NULL;
     }
     if (good && motion != Py_None)
-        good = motion_take(motion, b->settings.place_known ? &b->settings.place : NULL, 1,
-                           &b->motion, b->findings);
+        good = motion_take(motion, &b->motion);
     if (good && work_begin(&w, 1, progress)) {
         imk_error error;
         const imk_status status = session_work(b, names, &w.job, &error);

@@ -2,7 +2,6 @@
 /* Growth of the errors of models. */
 #include "extension_scene.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +10,6 @@
 typedef struct asked {
     imk_drift_models_settings settings;
     imk_drift_when when;
-    double latitude, height; /* DBL_MAX: not stated */
     uint64_t runs, seed;
     const char *want, *filter_name;
     int retuned;
@@ -34,8 +32,8 @@ static const setting rows[] = {
     DRIFT(gravity_distance, SETTING_QUANTITY, "m"),
     {"compensated", SETTING_FLAG, offsetof(asked, settings.calibrated), NULL},
     {"gains", SETTING_CHOICE, offsetof(asked, retuned), "held|retuned"},
-    {"latitude", SETTING_QUANTITY, offsetof(asked, latitude), "rad"},
-    {"height", SETTING_QUANTITY, offsetof(asked, height), "m"},
+    DRIFT(latitude, SETTING_QUANTITY, "rad"),
+    DRIFT(height, SETTING_QUANTITY, "m"),
     {"duration", SETTING_QUANTITY, offsetof(asked, when.duration), "s"},
     {"runs", SETTING_COUNT, offsetof(asked, runs), NULL},
     {"seed", SETTING_COUNT, offsetof(asked, seed), NULL},
@@ -69,15 +67,9 @@ static bool take_motion(analysis *d, PyObject *object)
 {
     imk_drift_settings *s = &d->a.settings.drift;
     imk_error error;
-    if (d->a.latitude != DBL_MAX)
-        s->latitude = d->a.latitude;
-    if (d->a.height != DBL_MAX)
-        s->height = d->a.height;
     if (object == Py_None)
         return true;
-    const imk_geodetic place = {s->latitude, 0.0, s->height};
-    if (!motion_take(object, d->a.latitude == DBL_MAX ? NULL : &place, d->a.seed, &d->motion,
-                     d->findings))
+    if (!motion_take(object, &d->motion))
         return false;
     s->motion = imk_motion_file_motion(d->motion.file)->trajectory;
     d->a.when.motion = imk_motion_file_duration(d->motion.file);
@@ -301,10 +293,7 @@ static PyObject *drift(PyObject *module, PyObject *args)
     PyObject *made = NULL;
     int threads;
     model_terms terms;
-    analysis d = {.a = {.settings = imk_drift_models_default(),
-                        .latitude = DBL_MAX,
-                        .height = DBL_MAX,
-                        .seed = 1}};
+    analysis d = {.a = {.settings = imk_drift_models_default(), .seed = 1}};
     imk_drift_settings *s = &d.a.settings.drift;
     double *i = s->initial_sigma;
     (void)module;
@@ -323,7 +312,6 @@ static PyObject *drift(PyObject *module, PyObject *args)
         made = run(&d, threads, progress);
     imk_drift_models_free(d.r);
     imk_drift_times_free(&d.chosen);
-    motion_free(&d.motion);
     columns_release(&d.times);
     columns_release(&d.outage);
     models_free(&d.list);

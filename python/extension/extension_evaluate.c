@@ -77,7 +77,6 @@ static void evaluation_free(evaluation *v)
     if (v->rest)
         record_end(v->rest);
     imk_evaluate_log_free(v->log);
-    motion_free(&v->motion);
     Py_XDECREF(v->findings);
     PyMem_Free(v);
 }
@@ -266,7 +265,7 @@ static PyObject *evaluate(PyObject *module, PyObject *args)
     bool good =
         v->findings && settings_take(v, settings, reading, shown) && records_take(v, records, rest);
     if (good && motion != Py_None)
-        good = motion_take(motion, NULL, 1, &v->motion, v->findings);
+        good = motion_take(motion, &v->motion);
     if (good && work_begin(&w, 1, progress)) {
         imk_error error;
         const imk_status status = evaluation_work(v, &w.job, &error);

@@ -209,7 +209,7 @@ static PyObject *describe_column(PyObject *owner, const imk_log *log, size_t k)
     return numbers ? Py_BuildValue("(sssN)", c->name, c->unit.text, si, numbers) : NULL;
 }
 
-static PyObject *describe_log(imk_log *log)
+PyObject *describe_log(imk_log *log)
 {
     PyObject *owner = PyCapsule_New(log, NULL, free_log);
     PyObject *list = owner ? PyList_New(0) : NULL;

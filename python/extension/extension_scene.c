@@ -136,45 +136,17 @@ void page_models(const model_list *list, imk_result *result)
 
 /* ---- motions ---- */
 
-/* The name of a file, or the text of a script, which has several lines. */
-static bool read_motion(PyObject *object, const imk_geodetic *place, uint64_t seed,
-                        imk_motion_file **file, const char **name)
+bool motion_take(PyObject *pair, motion_use *use)
 {
-    imk_error error;
-    imk_status status;
-    Py_ssize_t size = 0;
-    const char *text = PyUnicode_AsUTF8AndSize(object, &size);
-    if (!text)
-        return false;
-    const bool script = memchr(text, '\n', (size_t)size) != NULL;
-    *name = script ? "the motion" : text;
-    status = script ? imk_motion_parse(text, (size_t)size, place, seed, file, &error)
-                    : imk_motion_read(text, NULL, place, seed, file, &error);
-    if (status == IMK_OK)
-        return true;
-    raise_error(&error, *name);
-    return false;
-}
-
-bool motion_take(PyObject *object, const imk_geodetic *place, uint64_t seed, motion_use *use,
-                 PyObject *findings)
-{
-    *use = (motion_use){.file = NULL};
-    if (!PyUnicode_Check(object)) {
-        PyErr_SetString(PyExc_TypeError, "expected the name of a motion file, or its text");
+    PyObject *object;
+    if (!PyTuple_Check(pair)) {
+        PyErr_SetString(PyExc_TypeError, "expected a motion with its name");
         return false;
     }
-    if (!read_motion(object, place, seed, &use->file, &use->name))
+    if (!PyArg_ParseTuple(pair, "sO", &use->name, &object))
         return false;
-    const char *note = imk_motion_file_note(use->file);
-    return !*note ||
-           add_finding(findings, IMK_FINDING_WARNING, "motion", "%s: %s", use->name, note);
-}
-
-void motion_free(motion_use *use)
-{
-    imk_motion_file_free(use->file);
-    use->file = NULL;
+    use->file = motion_of(object);
+    return use->file != NULL;
 }
 
 /* ---- aids ---- */

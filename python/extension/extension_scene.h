@@ -38,16 +38,13 @@ void models_free(model_list *list);
 /** The models as texts on the page. */
 void page_models(const model_list *list, imk_result *result);
 
-/** A motion. */
+/** A motion; borrowed. */
 typedef struct motion_use {
-    imk_motion_file *file;
-    const char *name; /* borrowed */
+    const imk_motion_file *file; /* NULL: at rest */
+    const char *name;
 } motion_use;
-/** Of the name of a file or the text of a script; false with an exception.
- *  @param findings  what was noticed is added to this list */
-bool motion_take(PyObject *object, const imk_geodetic *place, uint64_t seed, motion_use *use,
-                 PyObject *findings);
-void motion_free(motion_use *use);
+/** Of a pair (name, motion); false with an exception. */
+bool motion_take(PyObject *pair, motion_use *use);
 
 /** Aids of a tuple of texts (aid_text.h); false with an exception. */
 bool aids_take(PyObject *texts, imk_aid aid[IMK_AIDS_MAX], size_t *count);

@@ -42,7 +42,7 @@ static bool choice_read(PyObject *object, const setting *row, int *value)
     return false;
 }
 
-static bool unit_read(PyObject *object, const setting *row, imk_unit *unit)
+bool unit_read(PyObject *object, const char *name, imk_unit *unit)
 {
     Py_ssize_t size;
     imk_error error;
@@ -51,7 +51,7 @@ static bool unit_read(PyObject *object, const setting *row, imk_unit *unit)
         return false;
     if (imk_unit_parse(text, text + size, unit, &error) == IMK_OK)
         return true;
-    raise_error(&error, row->name);
+    raise_error(&error, name);
     return false;
 }
 
@@ -98,7 +98,7 @@ static bool value_read(PyObject *object, const setting *row, void *at)
     case SETTING_CHOICE:
         return choice_read(object, row, at);
     case SETTING_UNIT:
-        return unit_read(object, row, at);
+        return unit_read(object, row->name, at);
     }
     if (!PyErr_Occurred())
         PyErr_Format(PyExc_ValueError, "%s: the number is too large", row->name);

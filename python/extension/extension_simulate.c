@@ -16,6 +16,11 @@ static void free_motion(PyObject *capsule)
     imk_motion_file_free(PyCapsule_GetPointer(capsule, motion_name));
 }
 
+const imk_motion_file *motion_of(PyObject *object)
+{
+    return PyCapsule_GetPointer(object, motion_name);
+}
+
 static void free_temperature(PyObject *capsule)
 {
     imk_temperature_file_free(PyCapsule_GetPointer(capsule, temperature_name));

@@ -5,19 +5,6 @@
 #include "imukit/earth.h"
 #include "imukit/units.h"
 
-static bool unit_argument(PyObject *object, imk_unit *unit)
-{
-    Py_ssize_t size;
-    imk_error error;
-    const char *text = PyUnicode_AsUTF8AndSize(object, &size);
-    if (!text)
-        return false;
-    if (imk_unit_parse(text, text + size, unit, &error) == IMK_OK)
-        return true;
-    raise_error(&error, NULL);
-    return false;
-}
-
 static bool arguments(const char *name, Py_ssize_t count, Py_ssize_t due)
 {
     if (count == due)
@@ -33,7 +20,7 @@ static PyObject *convert_unit(PyObject *module, PyObject *const *args, Py_ssize_
     if (!arguments("convert_unit", count, 3))
         return NULL;
     const double value = PyFloat_AsDouble(args[0]);
-    if (PyErr_Occurred() || !unit_argument(args[1], &from) || !unit_argument(args[2], &to))
+    if (PyErr_Occurred() || !unit_read(args[1], NULL, &from) || !unit_read(args[2], NULL, &to))
         return NULL;
     if (!imk_dimension_equal(from.dimension, to.dimension)) {
         imk_error error;

@@ -11,6 +11,7 @@ from . import _arrays, _core
 from ._estimates import plain_value
 from ._inputs import Data, is_path, is_several, open_record
 from ._model import Model, as_model
+from ._motion import Motion
 from ._results import LEVELS, Result, tell
 from ._scenes import ModelLike, as_motion
 from ._units import si
@@ -139,7 +140,7 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
               placement: float | str | None = None,
               g_sensitivity_sigma: float | str | None = None,
               mounting: float | str | None = None, turn_angle: float | str | None = None,
-              motion: str | os.PathLike[str] | None = None,
+              motion: Motion | str | os.PathLike[str] | None = None,
               motion_offset: float | str | None = None, table_axis: str | None = None,
               temperature_order: int | None = None,
               reference_temperature: float | str | None = None, poses: bool = False,
@@ -194,7 +195,7 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
     mounting     1 sigma of the unit's attitude on its fixture or table [rad]; None: 0
     turn_angle   ferraris: angle of each turn, with sign; turns: of each turn whose label states
                  none, above 0 [rad]; None: 360 deg
-    motion       motion file that the table ran, or the text of a script: the reference
+    motion       Motion or motion file that the table ran, or the text of a script: the reference
     motion_offset  time of the record at which it begins [s], or 'auto': find it; None: 0 s
     table_axis   'x', 'y' or 'z': axis about which the table turns the unit, for a column table_rate
     temperature_order  thermal: of the bias polynomial, 1 … 5; None: chosen by cross-validation
@@ -237,10 +238,14 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
     before = None if into is None else as_model(into)
     if name is None and not (before and before.get("name", None)):
         name = os.path.basename(names[0]).partition(".")[0] if is_path(runs[0]) else "record"
+    place = _place(position)
+    there = None if isinstance(motion, Motion) else place
+    moved = None if motion is None else \
+        as_motion(motion, there[0] if there else None, there[2] if there else None)
     core, findings, text, level = _core.calibrate(
         opened, names, () if repeats else tuple(procedures), _settings(given, repeats),
-        {key: _counts(given[key]) for key in _SHEET}, _place(position), _known(model),
-        before._core if before is not None else None, as_motion(motion), name, poses, progress)
+        {key: _counts(given[key]) for key in _SHEET}, place, _known(model),
+        before._core if before is not None else None, moved, name, poses, progress)
     result = CalibrateResult(core, findings, text, level, anyway)
     tell(result)
     return result

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from . import _arrays, _core
+from ._motion import Motion
 from ._results import Finding, Result, tell
 from ._scenes import (ModelLike, Numbers, as_motion, named_model, named_models, terms, texts,
                       vector)
@@ -215,9 +216,9 @@ def drift(models: ModelLike | Sequence[ModelLike], motion: Any = None, *,
     """How large the error of a navigator becomes, which terms cause it, and how small they must be.
 
     models       a Model, the name of a file or of a device; or up to 8 of them, to compare
-    motion       name of a motion file, or text of a script; without, the unit is at rest
+    motion       a Motion, name of a motion file, or text of a script; without, the unit is at rest
     rate         sampling rate [Hz]
-    duration     length of the navigation [s]; default: 24 h, that of the motion, or the time of want
+    duration     length of the navigation [s]; default: 24 h, that of the motion, or want's time
     times        times of the table instead [s]: numbers, or "1min, 10min, 1h"
     latitude     geodetic [rad]; default 45 deg, or what the motion states
     height       above the ellipsoid [m]; default 0
@@ -261,6 +262,13 @@ def drift(models: ModelLike | Sequence[ModelLike], motion: Any = None, *,
     >>> imukit.drift("tactical", duration="10min").budget()[0].text
     'accelerometer bias repeatability'
     """
+    if isinstance(motion, Motion) and motion.kind == "rest":
+        rest = motion._rest
+        if not latitude is height is roll is pitch is yaw is None or not rest["earth"]:
+            raise ValueError("a Motion at rest states place and attitude, on the Earth")
+        latitude, height, roll = rest["latitude"], rest["height"], rest["roll"]
+        pitch, yaw = rest["pitch"], rest["yaw"]
+        motion = None
     pairs = named_models(models)
     several = texts("aids", aids)
     _check(motion, len(pairs), several, roll=roll, pitch=pitch, yaw=yaw, aligned=aligned,
@@ -277,9 +285,10 @@ def drift(models: ModelLike | Sequence[ModelLike], motion: Any = None, *,
     initial = (*vector("initial_position", initial_position, "m", one=True),
                *vector("initial_velocity", initial_velocity, "m/s", one=True),
                *vector("initial_attitude", initial_attitude, "rad", one=True))
+    moved = None if motion is None else as_motion(motion, latitude, height, seed)
     result = DriftResult(*_core.drift(
         pairs, terms(only, without, assume_class), settings, initial, _times("times", times),
-        _times("outage", outage), as_motion(motion), core, several, threads, progress))
+        _times("outage", outage), moved, core, several, threads, progress))
     tell(result)
     return result
 

@@ -126,8 +126,9 @@ def evaluate(data: Data | Sequence[Data] = (), rate: float | str | None = None, 
     runs: Sequence[Data] = data if is_several(data) or data == () else [data]
     records = tuple(_open(run, rate, columns, log) for run in runs)
     rest = None if static is None else open_record(static, rate, None, log, "static")
+    moved = None if motion is None else as_motion(motion)
     result = EvaluateResult(*_core.evaluate(records, rest, settings, reading, quantities, sheet,
-                                            as_motion(motion), progress))
+                                            moved, progress))
     tell(result)
     return result
 

@@ -33,7 +33,7 @@ def open_record(data: Data, rate: float | str | None, columns: str | Sequence[st
     rate     sampling rate [Hz], or a text such as "200 Hz"
     columns  names of the columns, with units in brackets: "gyro_x [deg/s]"; without, SI
     log      options for reading a log
-    name     of what is no log, in messages
+    name     in messages, where it is no file
     """
     if is_path(data):
         return _core.open_log(data, log_options(rate, columns, log))

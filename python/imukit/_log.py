@@ -62,7 +62,7 @@ def made_log(name: str, columns: Sequence[tuple[str, str, str]], arrays: Sequenc
     """
     rows = len(arrays[0])
     time = arrays[0]
-    described = [(*column, array) for column, array in zip(columns, arrays)]
+    described = [(title, unit, unit, array) for (title, _, unit), array in zip(columns, arrays)]
     lost = due - rows
     gaps = sum(b - a > 1.5 * interval for a, b in zip(time, time[1:])) if lost else 0
     first, last = (float(time[0]), float(time[-1])) if rows else (float("nan"),) * 2

@@ -6,12 +6,14 @@ import copy
 import dataclasses
 import json
 import os
-from collections.abc import Iterator, Mapping, MutableMapping
+from collections.abc import Iterator, Mapping, MutableMapping, Sequence
 from typing import Any
 
 from . import _core
 from ._model_paths import (GROUPS, PATHS, TEXTS, TOP, bare, child, encode, insert, leaves, plain,
                            shaped, split)
+from ._parameters import ParameterText, findings_of, written
+from ._results import Finding
 
 CLASSES = ("strategic", "navigation", "tactical", "AHRS", "control", "own")
 
@@ -46,6 +48,8 @@ class Model(MutableMapping[str, Any]):
     False
     """
 
+    notes: tuple[Finding, ...]
+    """how the numbers of another program's file were read (from_parameters())"""
     _core: Any
     _cached: dict[str, Any] | None
 
@@ -62,7 +66,8 @@ class Model(MutableMapping[str, Any]):
         if name is not None:
             self["name"] = name
 
-    def _take(self, core: Any) -> None:
+    def _take(self, core: Any, notes: tuple[Finding, ...] = ()) -> None:
+        object.__setattr__(self, "notes", notes)
         object.__setattr__(self, "_core", core)
         object.__setattr__(self, "_cached", None)
 
@@ -208,6 +213,63 @@ class Model(MutableMapping[str, Any]):
             raise ValueError(f"{name!r}: expected {', '.join(CLASSES)}")
         object.__setattr__(self, "_cached", None)
         return self._core.assume_class(CLASSES.index(name))  # type: ignore[no-any-return]
+
+    # ---- other programs ----
+
+    @classmethod
+    def from_parameters(cls, path: str | os.PathLike[str] | None = None, *, text: str | None = None,
+                        format: str = "", rate: float | str | None = None,
+                        density: str = "as-the-program", sensor: str | None = None,
+                        frame_rate: float | str | None = None) -> Model:
+        """The model of a file of another program: kalibr, Gazebo, PX4 … (parameter_formats()).
+
+        path        of the file
+        text        of it, instead of a path
+        format      '': recognised by name and content
+        rate        sampling rate [Hz], where the format states noise per sample
+        density     meaning of a number per sqrt(Hz) where the format leaves it open:
+                    'as-the-program', 'two-sided' or 'one-sided'
+        sensor      name of one of several sensors in the file
+        frame_rate  LiDAR scans per second [Hz], of the format glim
+
+        How each number was read is in `notes`. Source: include/imukit/parameter_file.h."""
+        if (path is None) == (text is None):
+            raise TypeError("expected either a path or a text")
+        core, notes = _core.read_parameters(path, text, format, {
+            "rate": rate, "density": density, "sensor": sensor, "frame_rate": frame_rate})
+        made = cls.__new__(cls)
+        made._take(core, findings_of(notes, 3))
+        return made
+
+    def to(self, format: str, path: str | os.PathLike[str] | None = None, *,
+           rate: float | str | None = None, density: str = "as-the-program",
+           frame_rate: float | str | None = None, flicker: str = "random-walk",
+           tau_from: float | str | None = None, tau_to: float | str | None = None,
+           bias_instability_tau: float | str | None = None,
+           use_bounds: bool = False) -> ParameterText:
+        """The model as a file of another program (parameter_formats()), and its text.
+
+        format      'kalibr', 'gazebo', 'px4', 'filter' …
+        path        where to write it; None: it is not written
+        rate, density, frame_rate  as in from_parameters()
+        flicker     'filter': the process that replaces bias instability: 'random-walk',
+                    'gauss-markov', 'two-gauss-markov' or 'left-out'
+        tau_from, tau_to  'filter': averaging times between which it has to hold [s]
+        bias_instability_tau  a format with a random walk but no bias instability: carry it into the
+                    walk, so that its Allan deviation is right at this averaging time [s]
+        use_bounds  where the model has no random walk, use the bound in its evidence
+
+        Warns of values that the format cannot hold. Source: include/imukit/parameter_file.h.
+
+        >>> import imukit
+        >>> text = imukit.Model("navigation").to("kalibr", rate=200)
+        >>> "gyroscope_noise_density" in text, text.notes[0].level in ("note", "warning")
+        (True, True)
+        """
+        return written(self._core, path, format, {
+            "rate": rate, "density": density, "frame_rate": frame_rate, "flicker": flicker,
+            "tau_from": tau_from, "tau_to": tau_to, "use_bounds": use_bounds,
+            "bias_instability_tau": bias_instability_tau})
 
     # ---- the tree of the file ----
 
@@ -387,3 +449,15 @@ def devices(name: str = "") -> tuple[Device, ...]:
 def as_model(model: Model | str | os.PathLike[str] | Mapping[str, Any]) -> Model:
     """A model of what a function accepts in its place: a path, a name of the catalogue, a tree."""
     return model if isinstance(model, Model) else Model(model)
+
+
+def select_terms(model: Model, only: str | Sequence[str] | None,
+                 without: str | Sequence[str] | None) -> Model:
+    """A model with the terms of the arguments `only` and `without`; itself where both are None."""
+    if only is not None and without is not None:
+        raise ValueError("only and without exclude each other")
+    if only is not None:
+        return model.only(*([only] if isinstance(only, str) else only))
+    if without is not None:
+        return model.without(*([without] if isinstance(without, str) else without))
+    return model

@@ -9,6 +9,7 @@ from typing import Any
 from . import _core
 from ._inputs import is_path
 from ._model import Model, as_model
+from ._motion import Motion
 from ._units import si
 
 ModelLike = Model | str | os.PathLike[str] | Mapping[str, Any]
@@ -19,7 +20,7 @@ def named_models(models: ModelLike | Sequence[ModelLike]) -> tuple[tuple[str, An
     """Models with the names that results show."""
     if isinstance(models, Sequence) and not isinstance(models, str):
         return tuple(named_model(model) for model in models)
-    return (named_model(models),)  # type: ignore[arg-type]
+    return (named_model(models),)
 
 
 def named_model(model: ModelLike) -> tuple[str, Any]:
@@ -48,13 +49,21 @@ def _names(argument: str, names: str | Sequence[str] | None) -> tuple[str, ...] 
     return tuple(names)
 
 
-def as_motion(motion: Any) -> Any:
-    """A motion for the C functions: the name of a file, or the text of a script."""
-    if motion is None or isinstance(motion, str):
-        return motion
-    if isinstance(motion, os.PathLike):
-        return os.fspath(motion)
-    raise TypeError("motion: expected the name of a file, or the text of a script")
+def as_motion(motion: Any, latitude: float | str | None = None,
+              height: float | str | None = None, seed: int = 1) -> tuple[str, Any]:
+    """A motion of a Motion, the name of a file or the text of a script, with its name."""
+    if isinstance(motion, Motion):
+        if latitude is not None or height is not None:
+            raise ValueError("latitude and height are for a motion given as a file or a text")
+        if motion.kind == "rest":
+            raise ValueError("the motion is at rest; here it must move")
+        return motion.name or "the motion", motion._core
+    place: dict[str, Any] = {"latitude": latitude, "height": height or 0.0, "seed": seed}
+    if isinstance(motion, str) and "\n" in motion:
+        return "the motion", Motion.parse(motion, **place)._core
+    if is_path(motion):
+        return os.fspath(motion), Motion(motion, **place)._core
+    raise TypeError("motion: expected a Motion, the name of a file or the text of a script")
 
 
 def texts(argument: str, given: str | Sequence[str] | None) -> tuple[str, ...]:

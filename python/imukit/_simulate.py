@@ -11,7 +11,7 @@ from typing import Any
 
 from . import _arrays, _core
 from ._log import Log, made_log
-from ._model import Model, as_model
+from ._model import Model, as_model, select_terms
 from ._motion import Motion, temperature_of
 from ._results import DataWarning
 from ._units import si
@@ -26,7 +26,7 @@ class _Run:
 
     def __init__(self, model: _Model, rate: Any, duration: Any, motion: Any, temperature: Any,
                  options: dict[str, Any], level: int) -> None:
-        unit = _chosen(as_model(model), options.pop("only"), options.pop("without"))
+        unit = select_terms(as_model(model), options.pop("only"), options.pop("without"))
         run, field = options.pop("run"), options.pop("field")
         if not 0 <= run < 2 ** 32:
             raise ValueError(f"run={run}: expected 0 to 4294967295")
@@ -76,16 +76,6 @@ class _Run:
 
 
 _TRUTH_COLUMNS = 17
-
-
-def _chosen(model: Model, only: _Terms, without: _Terms) -> Model:
-    if only is not None and without is not None:
-        raise ValueError("only and without exclude each other")
-    if only is not None:
-        return model.only(*([only] if isinstance(only, str) else only))
-    if without is not None:
-        return model.without(*([without] if isinstance(without, str) else without))
-    return model
 
 
 def _motion(motion: Any, rate: Any, options: dict[str, Any]) -> Motion:
@@ -139,8 +129,8 @@ def simulate(model: _Model, rate: float | str | None = None,
     progress     called with (stage, unit, done, total); False ends the work
 
     The log has the columns time, gyro_x … accel_z, and mag_x … and temperature where there are
-    some, in SI units, or in counts where the model has a sensitivity. Warns of terms that are left out.
-    Raises imukit.Error. Source: include/imukit/simulate_log.h.
+    some, in SI units, or in counts where the model has a sensitivity. Warns of terms that are left
+    out. Raises imukit.Error. Source: include/imukit/simulate_log.h.
 
     >>> import imukit
     >>> log = imukit.simulate("tactical", rate=100, duration="10 s", seed=1)

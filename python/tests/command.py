@@ -22,6 +22,20 @@ def told(folder, *words):
     return json.loads(run(folder, *words, "--json"))
 
 
+def command_json(*words):
+    """What it prints as JSON, without its findings."""
+    return _data(told(None, *words))
+
+
+def python_json(result):
+    """The same of a result."""
+    return _data(result.to_dict())
+
+
+def _data(tree):
+    return {key: value for key, value in tree.items() if key != "findings"}
+
+
 def differences(a, b, path=""):
     """Where two trees differ: numbers by more than 1e-9 of their size, or anything else but
     messages, in which arguments stand for options."""

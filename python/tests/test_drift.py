@@ -8,7 +8,7 @@ import tempfile
 import unittest
 import warnings
 
-from compare import command_json, python_json
+from command import command_json, python_json
 
 import imukit
 
@@ -63,7 +63,8 @@ class Drift(Quiet):
             motion = pathlib.Path(folder, "drive.yaml")
             motion.write_text(DRIVE, encoding="utf-8")
             for words, arguments in (
-                    ("tactical -d 1min --compensated --assume-class own --only gyro.bias,gyro.noise",
+                    ("tactical -d 1min --compensated --assume-class own --only "
+                     "gyro.bias,gyro.noise",
                      {"duration": 60, "compensated": True, "assume_class": "own",
                       "only": "gyro.bias,gyro.noise"}),
                     ("ADIS16488 --times 10s,60s --aligned self --align-time 60s --vertical free "

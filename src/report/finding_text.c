@@ -765,6 +765,8 @@ static const struct message {
                  "the model, or add --rate-limit 500deg/s or --force-limit 10g"},
     {"model_refused", "{model}: {0t}"},
     {"not_written", "{0t}"},
+    {"compensate:axes_of_counts", "--axes changes signs, and counts have a zero offset; compensate "
+                                  "first, then use imukit convert --axes"},
     {"compensate:saturated", "saturated, at or beyond the range of an axis" SAMPLES_FIRST},
     {"compensate:temperature", "temperature outside the valid range of the model's terms, so the "
                                "nearer end of the range was used" SAMPLES_FIRST},

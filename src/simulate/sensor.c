@@ -101,14 +101,14 @@ static size_t divide(const imk_model *model, const imk_sensor_settings *settings
     *sensor = imki_take(parts, sizeof made);
     made.channel = imki_take(parts, count * channels * sizeof *made.channel);
     made.number = imki_take(parts, IMKI_SENSOR_NUMBERS * channels * places * sizeof(double));
-    const size_t zero = parts->used;
     made.rows = imki_take(parts, IMKI_SENSOR_ROWS * imki_row_places(count) * sizeof(double));
+    const size_t zero = parts->used;
     made.axis = imki_take(parts, channels * sizeof *made.axis);
     made.quantizer = imki_take(parts, channels * sizeof *made.quantizer);
     for (int kind = 0; kind < 2; kind++)
         if (has_hysteresis(settings, kind == IMK_GYRO ? &model->gyro : &model->accel))
             made.hysteresis[kind] = imki_take(parts, count * sizeof(imk_hysteresis));
-    made.noise = imki_take(parts, imki_noise_places(count) * channels * block);
+    made.noise = imki_take(parts, imki_noise_places(count == 1, count) * channels * block);
     made.block = imki_take(parts, scratch);
     if (*sensor) {
         memset(*sensor, 0, zero);
@@ -119,13 +119,14 @@ static size_t divide(const imk_model *model, const imk_sensor_settings *settings
 
 size_t imk_sensor_size(const imk_model *model, const imk_sensor_settings *settings)
 {
-    imki_parts one = {NULL, 0}, parts = {NULL, 0};
-    imk_sensor_settings single = *settings;
+    imki_parts group = {NULL, 0}, parts = {NULL, 0};
+    imk_sensor_settings of_group = *settings;
     imk_sensor *none;
-    single.count = IMKI_GROUP;
-    divide(model, &single, &one, &none);
+    of_group.count = IMKI_GROUP;
+    divide(model, &of_group, &group, &none);
     const size_t states = states_of(model, channels_of(model));
-    if (settings->count == 0 || settings->count > SIZE_MAX / 2 / (one.used + states))
+    const size_t one = group.used / IMKI_GROUP + 64 + states; /* no sensor needs more */
+    if (settings->count == 0 || settings->count > SIZE_MAX / 2 / one - IMKI_GROUP)
         return 0;
     divide(model, settings, &parts, &none);
     imki_take(&parts, settings->count * states);

@@ -62,17 +62,17 @@ static inline size_t imki_sensor_places(size_t count)
     return count == 1 ? 2 : (count + IMKI_GROUP - 1) / IMKI_GROUP * IMKI_GROUP;
 }
 
-/* Places in the noise of `count` sensors. */
-static inline size_t imki_noise_places(size_t count)
+/* Places in the noise of a single sensor, or of some of many. */
+static inline size_t imki_noise_places(bool single, size_t count)
 {
-    return count == 1 ? 1 : (count + IMKI_INTERLEAVED - 1) / IMKI_INTERLEAVED * IMKI_INTERLEAVED;
+    return single ? 1 : (count + IMKI_INTERLEAVED - 1) / IMKI_INTERLEAVED * IMKI_INTERLEAVED;
 }
 
 /* The noise of the group that begins with this sensor. @param places  of each sample */
 static inline double *imki_group_noise(const imk_sensor *s, size_t first, size_t *places)
 {
     const size_t left = s->count - first;
-    *places = imki_noise_places(left < IMKI_GROUP ? left : IMKI_GROUP);
+    *places = imki_noise_places(s->count == 1, left < IMKI_GROUP ? left : IMKI_GROUP);
     return s->noise + first * s->channels * IMK_NOISE_BLOCK;
 }
 

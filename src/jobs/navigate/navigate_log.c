@@ -60,13 +60,23 @@ static imk_status check_aids(const imk_navigate_log_settings *s, imk_error *erro
 static imk_status check_settings(const imk_navigate_log_settings *s, imk_error *error)
 {
     const bool timetable = s->stops == IMK_STOPS_TIMETABLE, stops = s->stops != IMK_STOPS_NONE;
-    const double g = s->standard_gravity;
+    const double g = s->standard_gravity, quarter = 1.5707963267948968; /* rounded upwards */
     const struct {
         const char *field;
         bool wrong;
         double value, limit;
         const char *expected;
     } rules[] = {
+        {"place.latitude", !(fabs(s->place.latitude) <= quarter), s->place.latitude, quarter,
+         "at most 90 deg"},
+        {"place.longitude", !(fabs(s->place.longitude) <= 4 * quarter), s->place.longitude,
+         4 * quarter, "at most 360 deg"},
+        {"place.height", !(s->place.height >= -1e4 && s->place.height <= 1e5), s->place.height, 1e5,
+         "-10 to 100 km"},
+        {"attitude", !(fabs(s->attitude[0]) + fabs(s->attitude[2]) <= 8 * quarter), s->attitude[0],
+         4 * quarter, "roll and yaw within 360 deg"},
+        {"attitude", !(fabs(s->attitude[1]) <= quarter), s->attitude[1], quarter,
+         "a pitch within 90 deg"},
         {"align", !(s->align >= 1 || s->align == 0), s->align, 1, "at least 1 s, or 0"},
         {"model", stops && !s->model, 0, 0, "a model: stops need one"},
         {"stops", s->stops == IMK_STOPS_FOUND && s->align == 0, 0, 0, "an alignment before stops"},
