@@ -24,6 +24,9 @@
 
 /** @name Errors
  *  @{ */
+/** A text of the library, in which arguments stand for options of the command; NULL with an
+ *  exception. */
+PyObject *told_text(const char *text);
 /** Raise imukit.Error, or MemoryError, FileNotFoundError's kind imukit.FileError, with the message
  *  of an error. @param source  name of the file that it is about; NULL: none. @return NULL */
 PyObject *raise_error(const imk_error *error, const char *source);

@@ -62,7 +62,7 @@ static const char *put_argument(const char *option, char **to)
     return at + 1 + length;
 }
 
-static PyObject *text_of(const char *text)
+PyObject *told_text(const char *text)
 {
     char *words = PyMem_Malloc(2 * strlen(text) + 1), *end = words;
     if (!words)
@@ -89,13 +89,13 @@ static PyObject *raise(const imk_error *error, const char *message, PyObject *fi
         return PyErr_NoMemory();
     const bool file =
         status == IMK_ERROR_OPEN || status == IMK_ERROR_READ || status == IMK_ERROR_WRITE;
-    PyObject *text = text_of(message);
+    PyObject *text = told_text(message);
     PyObject *raised =
         text ? PyObject_CallFunctionObjArgs(file ? file_error_class : error_class, text, NULL)
              : NULL;
     Py_XDECREF(text);
-    if (raised && set_attribute(raised, "code", text_of(imk_status_name(status))) &&
-        set_attribute(raised, "field", text_of(error->field)) &&
+    if (raised && set_attribute(raised, "code", told_text(imk_status_name(status))) &&
+        set_attribute(raised, "field", told_text(error->field)) &&
         set_attribute(raised, "index", PyLong_FromLong(error->index)) &&
         set_attribute(raised, "value", PyFloat_FromDouble(error->value)) &&
         set_attribute(raised, "limit", PyFloat_FromDouble(error->limit)) &&
@@ -126,7 +126,7 @@ static PyObject *message_of(const imk_finding *finding, const char *record, cons
     if (!text)
         return PyErr_NoMemory();
     imk_finding_message(finding, record, model, text, size);
-    PyObject *message = text_of(text);
+    PyObject *message = told_text(text);
     PyMem_Free(text);
     return message;
 }

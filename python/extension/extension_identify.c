@@ -53,7 +53,7 @@ static const setting plan_rows[] = {
 
 typedef struct ending {
     const char *source, *name; /* of the record in the evidence; of the model, NULL: as it is */
-    bool twin;
+    bool twin, verbose;
     uint64_t seed;
     model_object *truth, *into;                 /* borrowed; NULL: none */
     imk_model model;                            /* of what was identified */
@@ -65,6 +65,7 @@ static const setting ending_rows[] = {
     {"name", SETTING_TEXT, offsetof(ending, name), NULL},
     {"twin", SETTING_FLAG, offsetof(ending, twin), NULL},
     {"seed", SETTING_COUNT, offsetof(ending, seed), NULL},
+    {"verbose", SETTING_FLAG, offsetof(ending, verbose), NULL},
 };
 
 /* Read the settings; false with an exception. NULL for `e` is an exception, too. */
@@ -135,6 +136,7 @@ static imk_identify_shown ending_shown(const ending *e, const imk_identify_log *
     return (imk_identify_shown){.log = log,
                                 .name = name,
                                 .verdict = verdict,
+                                .verbose = e->verbose,
                                 .truth = e->truth ? &e->truth->model : NULL,
                                 .twin = drawn ? e->curve : NULL};
 }

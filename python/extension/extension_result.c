@@ -79,12 +79,16 @@ static PyObject *json(PyObject *self, PyObject *none)
 
 static PyObject *plain(PyObject *self, PyObject *none)
 {
-    char *text = NULL;
+    char *text = NULL; /* ends in a zero */
     size_t size = 0;
     (void)none;
     const imk_status status =
         imk_result_to_text(((result *)self)->result, NULL, NULL, &text, &size);
-    return text_of(status, text, size);
+    if (status != IMK_OK)
+        return PyErr_NoMemory();
+    PyObject *object = told_text(text);
+    free(text);
+    return object;
 }
 
 static PyObject *page(PyObject *self, PyObject *none)

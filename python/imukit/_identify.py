@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from . import _core
@@ -11,9 +11,7 @@ from ._estimates import Estimate, channel_of, estimates_of
 from ._inputs import Data, is_path, open_record
 from ._model import Model, as_model
 from ._results import Result, tell, wrap
-
-AnyModel = Model | str | os.PathLike[str] | Mapping[str, Any]
-"""A Model, the path of a model file, a name of the catalogue, or the tree of a model file."""
+from ._scenes import ModelLike
 
 
 class IdentifyResult(Result):
@@ -64,8 +62,9 @@ def identify(data: Data, rate: float | str | None = None, *,
              columns: str | Sequence[str] | None = None, confidence: float = 0.95,
              significance: float = 0.01, keep: str | Sequence[str] = (),
              method: str = "likelihood", tolerance: float | None = None, gauss_markov: int = 0,
-             gaps: str = "keep", name: str | None = None, into: AnyModel | None = None,
-             truth: AnyModel | None = None, twin: bool = False, seed: int = 1, threads: int = 0,
+             gaps: str = "keep", name: str | None = None, into: ModelLike | None = None,
+             truth: ModelLike | None = None, twin: bool = False, seed: int = 1,
+             verbose: bool = False, threads: int = 0,
              progress: Callable[[str, str, int, int], object] | None = None,
              **log: Any) -> IdentifyResult:
     """The noise of every channel of a record at rest, with intervals and a verdict.
@@ -87,6 +86,7 @@ def identify(data: Data, rate: float | str | None = None, *,
                   noise and the output filter replaced
     truth         the same: its values are shown beside the estimates, for simulated records
     twin, seed    simulate the model over the length of the record, for the figure
+    verbose       the text has the messages of the verdict with all details, as the page
     threads       0: one per processor
     progress      called with (stage, unit, done, total); False ends the work
     log           options for reading a log: see read_log()
@@ -112,8 +112,8 @@ def identify(data: Data, rate: float | str | None = None, *,
                 "tolerance": tolerance, "gauss_markov_max": gauss_markov}
     record = open_record(data, rate, columns, {"reopened": True, **log} if is_path(data) else log)
     result = IdentifyResult(*_core.identify(record, False, settings,
-                                            _ending([data], name, twin, seed), _core_of(truth),
-                                            _core_of(into), threads, progress))
+                                            _ending([data], name, twin, seed, verbose),
+                                            _core_of(truth), _core_of(into), threads, progress))
     tell(result)
     return result
 
@@ -121,9 +121,9 @@ def identify(data: Data, rate: float | str | None = None, *,
 def identify_runs(data: Sequence[Data], rate: float | str | None = None, *,
                   columns: str | Sequence[str] | None = None, confidence: float = 0.95,
                   significance: float = 0.01, keep: str | Sequence[str] = (), gaps: str = "keep",
-                  name: str | None = None, into: AnyModel | None = None,
-                  truth: AnyModel | None = None, twin: bool = False, seed: int = 1,
-                  threads: int = 0,
+                  name: str | None = None, into: ModelLike | None = None,
+                  truth: ModelLike | None = None, twin: bool = False, seed: int = 1,
+                  verbose: bool = False, threads: int = 0,
                   progress: Callable[[str, str, int, int], object] | None = None,
                   **log: Any) -> IdentifyResult:
     """One joint model of several records of one sensor, whether these agree, and how much the mean
@@ -131,8 +131,8 @@ def identify_runs(data: Sequence[Data], rate: float | str | None = None, *,
 
     data     2 to 24 records, each as identify() takes it; all have the same columns
 
-    rate, columns, confidence, significance, keep, gaps, name, into, truth, twin, seed, threads,
-    progress and log are as of identify(), for all records.
+    rate, columns, confidence, significance, keep, gaps, name, into, truth, twin, seed, verbose,
+    threads, progress and log are as of identify(), for all records.
 
     Raises imukit.Error: the columns or rates of the records differ; errors of identify().
     Source: include/imukit/identify_several.h.
@@ -146,21 +146,21 @@ def identify_runs(data: Sequence[Data], rate: float | str | None = None, *,
     (True, True)
     """
     return _several(True, data, rate, columns, confidence, significance, keep, gaps,
-                    _ending(data, name, twin, seed), truth, into, threads, progress, log)
+                    _ending(data, name, twin, seed, verbose), truth, into, threads, progress, log)
 
 
 def identify_devices(data: Sequence[Data], rate: float | str | None = None, *,
                      columns: str | Sequence[str] | None = None, confidence: float = 0.95,
                      significance: float = 0.01, keep: str | Sequence[str] = (),
-                     gaps: str = "keep", threads: int = 0,
+                     gaps: str = "keep", verbose: bool = False, threads: int = 0,
                      progress: Callable[[str, str, int, int], object] | None = None,
                      **log: Any) -> IdentifyResult:
     """Mean and spread of each term over different sensors of one kind, and which of them differ.
 
     data     2 to 24 records, each as identify() takes it; all have the same columns
 
-    rate, columns, confidence, significance, keep, gaps, threads, progress and log are as of
-    identify(), for all records.
+    rate, columns, confidence, significance, keep, gaps, verbose, threads, progress and log are
+    as of identify(), for all records.
 
     Raises imukit.Error: the columns of the records differ; errors of identify().
     Source: include/imukit/identify_several.h.
@@ -174,14 +174,15 @@ def identify_devices(data: Sequence[Data], rate: float | str | None = None, *,
     (True, 'rad/sqrt(s)')
     """
     return _several(False, data, rate, columns, confidence, significance, keep, gaps,
-                    _ending(data, None, False, 1), None, None, threads, progress, log)
+                    _ending(data, None, False, 1, verbose), None, None, threads, progress, log)
 
 
 def identify_curve(data: Data, rate: float | str, duration: float | str, *,
                    columns: str | Sequence[str] | None = None, confidence: float = 0.95,
                    significance: float = 0.01, tolerance: float | None = None,
                    gauss_markov: int = 0, plain: bool = False, name: str | None = None,
-                   into: AnyModel | None = None, truth: AnyModel | None = None,
+                   into: ModelLike | None = None, truth: ModelLike | None = None,
+                   verbose: bool = False,
                    progress: Callable[[str, str, int, int], object] | None = None,
                    **log: Any) -> IdentifyResult:
     """The noise behind a table of Allan deviations, such as that of a data sheet.
@@ -196,7 +197,7 @@ def identify_curve(data: Data, rate: float | str, duration: float | str, *,
                   smallest with which the terms explain the curve, which is told
     gauss_markov  Gauss-Markov terms to look for, 0 … 8
     plain         the clusters of the curve do not overlap
-    name, into, truth, progress, log  as of identify()
+    name, into, truth, verbose, progress, log  as of identify()
 
     Raises imukit.Error: not such a table, fewer than four averaging times.
     Source: include/imukit/identify_curve.h.
@@ -214,13 +215,13 @@ def identify_curve(data: Data, rate: float | str, duration: float | str, *,
     record = open_record(data, rate, columns,
                          {"any_columns": True, **log} if is_path(data) else log)
     result = IdentifyResult(*_core.identify(record, True, settings,
-                                            _ending([data], name, False, 1), _core_of(truth),
-                                            _core_of(into), 1, progress))
+                                            _ending([data], name, False, 1, verbose),
+                                            _core_of(truth), _core_of(into), 1, progress))
     tell(result)
     return result
 
 
-def plan_record(model: AnyModel, rate: float | str, *, want: str | None = None,
+def plan_record(model: ModelLike, rate: float | str, *, want: str | None = None,
                 duration: float | str | None = None, significance: float = 0.01) -> RecordPlan:
     """How accurately a record determines the noise of a model, and how long to record.
 
@@ -249,7 +250,7 @@ def plan_record(model: AnyModel, rate: float | str, *, want: str | None = None,
 
 def _several(runs: bool, data: Sequence[Data], rate: Any, columns: Any, confidence: float,
              significance: float, keep: str | Sequence[str], gaps: str, ending: dict[str, Any],
-             truth: AnyModel | None, into: AnyModel | None, threads: int, progress: Any,
+             truth: ModelLike | None, into: ModelLike | None, threads: int, progress: Any,
              log: dict[str, Any]) -> IdentifyResult:
     if is_path(data) or not isinstance(data, Sequence):
         raise TypeError("expected a sequence of two records or more")
@@ -265,14 +266,15 @@ def _several(runs: bool, data: Sequence[Data], rate: Any, columns: Any, confiden
     return result
 
 
-def _ending(data: Sequence[Data], name: str | None, twin: bool, seed: int) -> dict[str, Any]:
+def _ending(data: Sequence[Data], name: str | None, twin: bool, seed: int,
+            verbose: bool) -> dict[str, Any]:
     names = [os.path.basename(os.fspath(one)) if is_path(one) else "record" for one in data]
     source = ", ".join(dict.fromkeys(names))
     return {"source": source, "name": source.partition(".")[0] if name is None else name,
-            "twin": twin, "seed": seed}
+            "twin": twin, "seed": seed, "verbose": verbose}
 
 
-def _core_of(model: AnyModel | None) -> Any:
+def _core_of(model: ModelLike | None) -> Any:
     return None if model is None else as_model(model)._core
 
 

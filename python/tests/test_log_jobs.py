@@ -74,6 +74,12 @@ class Same(InFolder):
         into = imukit.identify("run1.csv", into="ADIS16488", name=imukit.Model("m.yaml")["name"])
         self.assertEqual(into.model, imukit.Model("m.yaml"))
 
+    def test_text_names_no_options(self):
+        for verbose in (False, True):
+            text = str(imukit.identify("run1.csv", verbose=verbose))
+            self.assertNotIn("--", text)
+            self.assertEqual("Details: verbose" in text or "details: verbose" in text, not verbose)
+
     def test_identify_several(self):
         runs = imukit.identify_runs(["run1.csv", "run2.csv"])
         self.same(runs, "identify", "run1.csv", "run2.csv", "--runs")

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Logs that hold several sensors: which there are, which one is read; and a first look at a log.
- * And what formats that define their own columns and clocks share. */
+/* Logs that hold several sensors: which there are, which one is read. And what formats that define
+ * their own columns and clocks share. */
 #include "log_reader_internal.h"
 
 #include <math.h>
@@ -200,24 +200,4 @@ imk_status imki_log_first_rows(imk_log_reader *reader, uint64_t rows, const doub
         reader->steps.usual = (time[1] - time[0]) * scale;
     }
     return IMK_OK;
-}
-
-imk_status imk_log_open_first_look(const char *path, const imk_log_settings *settings,
-                                   imk_log_reader **reader, imk_error *lacking, imk_error *error)
-{
-    const imk_status status = imk_log_open(path, settings, reader, lacking);
-    if (status == IMK_OK)
-        *lacking = (imk_error){.status = IMK_OK};
-    if (status == IMK_OK)
-        return IMK_OK;
-    if (status == IMK_ERROR_UNIT_MISSING || status == IMK_ERROR_RATE_MISSING ||
-        status == IMK_ERROR_COLUMN) {
-        imk_log_settings written = *settings;
-        written.as_written = true;
-        if (imk_log_open(path, &written, reader, NULL) == IMK_OK)
-            return IMK_OK;
-    }
-    if (error)
-        *error = *lacking;
-    return status;
 }
