@@ -3,27 +3,16 @@
 #include "extension.h"
 
 static PyMethodDef *const functions[] = {
-<<<<<<< HEAD
-    allan_functions,    design_functions,   drift_functions,   grade_functions,  identify_functions,
-    info_functions,     model_functions,    physics_functions, record_functions, sensor_functions,
-    simulate_functions, spectrum_functions, unit_functions,
-=======
-    allan_functions,    calibrate_functions, drift_functions,    grade_functions,
-    identify_functions, info_functions,      model_functions,    navigate_functions,
-    record_functions,   sensor_functions,    simulate_functions, spectrum_functions,
-    tune_functions,     unit_functions,
->>>>>>> origin/main
+    allan_functions,    calibrate_functions, design_functions, drift_functions,
+    grade_functions,    identify_functions,  info_functions,   model_functions,
+    navigate_functions, physics_functions,   record_functions, sensor_functions,
+    simulate_functions, spectrum_functions,  tune_functions,   unit_functions,
 };
 
 /* Types, exceptions and constants. */
 static bool (*const additions[])(PyObject *module) = {
-<<<<<<< HEAD
-    add_errors, add_result, add_record, add_identify,
+    add_errors, add_result, add_record, add_calibrate, add_identify,
     add_model,  add_design, add_sensor, add_simulate,
-=======
-    add_errors,   add_result, add_record, add_calibrate,
-    add_identify, add_model,  add_sensor, add_simulate,
->>>>>>> origin/main
 };
 
 static struct PyModuleDef definition = {

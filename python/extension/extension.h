@@ -184,21 +184,15 @@ bool add_simulate(PyObject *module);
 
 /** Functions of the module, by their files; each ends with a row of zeros. */
 extern PyMethodDef allan_functions[];
-<<<<<<< HEAD
-extern PyMethodDef design_functions[];
-=======
 extern PyMethodDef calibrate_functions[];
->>>>>>> origin/main
+extern PyMethodDef design_functions[];
 extern PyMethodDef drift_functions[];
 extern PyMethodDef grade_functions[];
 extern PyMethodDef identify_functions[];
 extern PyMethodDef info_functions[];
 extern PyMethodDef model_functions[];
-<<<<<<< HEAD
-extern PyMethodDef physics_functions[];
-=======
 extern PyMethodDef navigate_functions[];
->>>>>>> origin/main
+extern PyMethodDef physics_functions[];
 extern PyMethodDef record_functions[];
 extern PyMethodDef sensor_functions[];
 extern PyMethodDef simulate_functions[];
