@@ -68,11 +68,12 @@ def as_motion(motion: Any, latitude: float | str | None = None,
 
 def texts(argument: str, given: str | Sequence[str] | None) -> tuple[str, ...]:
     """One text, or several."""
-    if given is None or isinstance(given, str):
-        return () if given is None else (given,)
-    if not isinstance(given, Sequence) or not all(isinstance(text, str) for text in given):
+    several = () if given is None else (given,) if isinstance(given, str) else given
+    if not isinstance(several, Sequence) or not all(isinstance(text, str) for text in several):
         raise TypeError(f"{argument}: expected texts")
-    return tuple(given)
+    if any("\0" in text for text in several):
+        raise ValueError(f"{argument}: a text has a character 0")
+    return tuple(several)
 
 
 def numbers(argument: str, value: Numbers, unit: str) -> tuple[float, ...]:

@@ -172,6 +172,7 @@ class Refused(Quiet):
                 (imukit.Error, "did you mean position", {"aids": "positon 1 m"}),
                 (TypeError, "aids", {"aids": 3}),
                 (TypeError, "aids", {"aids": [3]}),
+                (ValueError, "character 0", {"aids": "position 1 m\0"}),
                 (imukit.Error, "want.*CEP, R95", {"want": "CPE 1 m @ 1h"}),
                 (imukit.Error, "want.*time is missing", {"want": "CEP 1 m"}),
                 (imukit.Error, "want", {"want": "CEP 1 m @ 1h", "duration": 60}),
