@@ -254,7 +254,7 @@ imk_status imk_simulated_rows_start(const imk_model *model,
         status =
             imk_simulator_start(model, &settings->simulation, &r->simulator, memory, size, error);
     }
-    if (status != IMK_OK) {
+    if (!r || status != IMK_OK) {
         imki_arena_free(&arena);
         return status;
     }
@@ -294,10 +294,11 @@ imk_status imk_simulate_log_run(const imk_model *model, const imk_simulate_log_s
     imk_status status = imki_simulate_check(model, settings, sink, error);
     if (status == IMK_OK)
         status = imk_simulated_rows_start(model, settings, job, &r, error);
-    if (status != IMK_OK)
+    if (!r)
         return status;
     double *block = imki_arena_room(&r->arena, r->layout.count * BLOCK_ROWS * sizeof *block);
-    for (size_t c = 0; block && c < r->layout.count; c++)
+    column[0] = block;
+    for (size_t c = 1; block && c < r->layout.count; c++)
         column[c] = block + c * BLOCK_ROWS;
     status = block ? stream(r, column, sink, stage, job, error)
                    : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
