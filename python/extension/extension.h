@@ -134,6 +134,10 @@ PyObject *extended(PyObject *tuple, PyObject *more);
 /** Add the type to the module. */
 bool add_result(PyObject *module);
 
+/** The bytes of a text, which live as long as it does; NULL with a TypeError for what is no text.
+ *  @param size  NULL: not wanted */
+const char *utf8_of(PyObject *object, Py_ssize_t *size);
+
 /** @name Settings
  *  @{ */
 /** What a setting is in Python, and in the structure. */

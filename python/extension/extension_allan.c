@@ -25,7 +25,7 @@ static const setting allan_rows[] = {
 /* The statistic of a name; IMK_ALLAN_STATISTICS with an exception for another word. */
 static imk_allan_statistic statistic_of(PyObject *object)
 {
-    const char *text = PyUnicode_AsUTF8AndSize(object, NULL);
+    const char *text = utf8_of(object, NULL);
     for (size_t k = 0; text && k < IMK_ALLAN_STATISTICS; k++)
         if (strcmp(text, imk_allan_name((imk_allan_statistic)k)) == 0)
             return (imk_allan_statistic)k;

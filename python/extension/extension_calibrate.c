@@ -69,7 +69,7 @@ static bool counts_take(PyObject *object, const char *name, const char *unit,
     imk_error error;
     if (PyUnicode_Check(object)) {
         Py_ssize_t size;
-        const char *text = PyUnicode_AsUTF8AndSize(object, &size);
+        const char *text = utf8_of(object, &size);
         if (!text)
             return false;
         if (imk_quantity_parse(text, text + size, imk_unit_of(unit).dimension, IMK_AXES_MAX,
@@ -129,7 +129,7 @@ bool calibrate_settings_read(PyObject *dictionary, PyObject *place, imk_calibrat
 
 static imk_procedure procedure_of(PyObject *object)
 {
-    const char *name = PyUnicode_AsUTF8AndSize(object, NULL);
+    const char *name = utf8_of(object, NULL);
     char all[200] = "";
     for (int p = 0; name && p < IMK_PROCEDURES; p++) {
         if (strcmp(name, imk_procedure_name((imk_procedure)p)) == 0)
@@ -278,8 +278,8 @@ static imk_verdict assess(const session *b, imk_result *result)
         PyObject *finding = PyList_GetItem(b->findings, k);
         if (PyLong_AsLong(PyTuple_GetItem(finding, 0)) != IMK_FINDING_WARNING)
             continue;
-        const char *code = PyUnicode_AsUTF8AndSize(PyTuple_GetItem(finding, 1), NULL);
-        const char *said = PyUnicode_AsUTF8AndSize(PyTuple_GetItem(finding, 2), NULL);
+        const char *code = utf8_of(PyTuple_GetItem(finding, 1), NULL);
+        const char *said = utf8_of(PyTuple_GetItem(finding, 2), NULL);
         before[count++] = (imk_message){.level = IMK_FINDING_WARNING,
                                         .code = imk_result_key(result, "%s", code ? code : ""),
                                         .text = imk_result_key(result, "%s", said ? said : "")};
@@ -353,7 +353,7 @@ static PyObject *calibrate(PyObject *module, PyObject *args)
                 models_copy(b, runs, model, into);
     for (size_t k = 0; good && k < b->count; k++) {
         PyObject *label = PyTuple_GetItem(labels, (Py_ssize_t)k);
-        names[k] = label ? PyUnicode_AsUTF8AndSize(label, NULL) : NULL;
+        names[k] = label ? utf8_of(label, NULL) : NULL;
         good = names[k] != NULL;
     }
     if (good && motion != Py_None)

@@ -220,7 +220,7 @@ static const imk_design_field *find_field(const design *d, const char *path)
 
 static PyObject *get(PyObject *self, PyObject *path)
 {
-    const imk_design_field *field = find_field((design *)self, PyUnicode_AsUTF8AndSize(path, NULL));
+    const imk_design_field *field = find_field((design *)self, utf8_of(path, NULL));
     return field ? field_value(field, ((design *)self)->file.design) : NULL;
 }
 
@@ -250,7 +250,7 @@ static bool set_fields(design *d, PyObject *values, void *into)
     PyObject *key, *value;
     Py_ssize_t at = 0;
     while (PyDict_Next(values, &at, &key, &value)) {
-        const imk_design_field *field = find_field(d, PyUnicode_AsUTF8AndSize(key, NULL));
+        const imk_design_field *field = find_field(d, utf8_of(key, NULL));
         PyObject *one = field ? PyDict_New() : NULL;
         const bool good =
             one && PyDict_SetItem(one, key, value) == 0 && set_field(one, value, field, into);

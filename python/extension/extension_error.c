@@ -155,7 +155,7 @@ PyObject *raise_failure(const imk_findings *findings, const imk_error *error, co
         return raise_error(error, record);
     PyObject *list = list_findings(findings, record, model);
     PyObject *message = list ? message_of(failure, record, model) : NULL;
-    const char *text = message ? PyUnicode_AsUTF8AndSize(message, NULL) : NULL;
+    const char *text = message ? utf8_of(message, NULL) : NULL;
     if (text)
         raise(error, text, list);
     Py_XDECREF(message);

@@ -218,7 +218,7 @@ static PyObject *model_paths(PyObject *module, PyObject *none)
 /* path_unit(path) -> unit, or None */
 static PyObject *path_unit(PyObject *module, PyObject *path)
 {
-    const char *text = PyUnicode_AsUTF8AndSize(path, NULL);
+    const char *text = utf8_of(path, NULL);
     const char *unit = text ? imk_model_path_unit(text) : NULL;
     (void)module;
     if (!text)
@@ -276,7 +276,7 @@ static PyObject *select_terms(PyObject *self, PyObject *args)
     if (count < 1 || count > 64)
         return PyErr_Format(PyExc_ValueError, "%zd names of terms: expected 1 to 64", count);
     for (Py_ssize_t k = 0; k < count; k++)
-        if (!(names[k] = PyUnicode_AsUTF8AndSize(PyTuple_GetItem(tuple, k), NULL)))
+        if (!(names[k] = utf8_of(PyTuple_GetItem(tuple, k), NULL)))
             return NULL;
     if (imk_model_select(&((model_object *)self)->model, keep, (size_t)count, names, &error) !=
         IMK_OK)

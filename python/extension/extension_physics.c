@@ -36,7 +36,7 @@ static bool vector_read(PyObject *object, const char *name, const char *unit, do
     imk_error error;
     if (PyUnicode_Check(object)) {
         Py_ssize_t size;
-        const char *text = PyUnicode_AsUTF8AndSize(object, &size);
+        const char *text = utf8_of(object, &size);
         const imk_status status =
             text ? imk_quantity_parse(text, text + size, imk_unit_of(unit).dimension, 3, vector,
                                       sigma, &count, NULL, &error)

@@ -87,7 +87,7 @@ static PyObject *of_arrays(PyObject *module, PyObject *args)
         PyErr_Format(PyExc_ValueError, "%zd names of columns for %zu columns", PyTuple_Size(list),
                      r->columns.count);
     for (size_t k = 0; good && k < r->columns.count; k++) {
-        names[k] = PyUnicode_AsUTF8AndSize(PyTuple_GetItem(list, (Py_ssize_t)k), NULL);
+        names[k] = utf8_of(PyTuple_GetItem(list, (Py_ssize_t)k), NULL);
         good = names[k] != NULL;
     }
     if (good &&

@@ -27,7 +27,7 @@ static bool take_names(PyObject *names, const char *argument, size_t *count, con
         return false;
     }
     for (size_t k = 0; k < *count; k++)
-        if (!(name[k] = PyUnicode_AsUTF8AndSize(PyTuple_GetItem(names, (Py_ssize_t)k), NULL)))
+        if (!(name[k] = utf8_of(PyTuple_GetItem(names, (Py_ssize_t)k), NULL)))
             return false;
     return true;
 }
@@ -158,7 +158,7 @@ bool aids_take(PyObject *texts, imk_aid aid[IMK_AIDS_MAX], size_t *count)
         imk_aid more[IMK_AIDS_MAX];
         size_t found;
         imk_error error;
-        const char *text = PyUnicode_AsUTF8AndSize(PyTuple_GetItem(texts, k), NULL);
+        const char *text = utf8_of(PyTuple_GetItem(texts, k), NULL);
         if (!text)
             return false;
         if (imk_aid_parse(text, more, &found, &error) != IMK_OK) {

@@ -5,6 +5,14 @@
 #include <math.h>
 #include <string.h>
 
+const char *utf8_of(PyObject *object, Py_ssize_t *size)
+{
+    if (PyUnicode_Check(object))
+        return PyUnicode_AsUTF8AndSize(object, size);
+    PyErr_Format(PyExc_TypeError, "expected a text, not %R", (PyObject *)Py_TYPE(object));
+    return NULL;
+}
+
 bool quantity_read(PyObject *object, const char *name, const char *unit, double *value)
 {
     imk_error error;
@@ -15,7 +23,7 @@ bool quantity_read(PyObject *object, const char *name, const char *unit, double 
         return !PyErr_Occurred();
     }
     Py_ssize_t size;
-    const char *text = PyUnicode_AsUTF8AndSize(object, &size);
+    const char *text = utf8_of(object, &size);
     if (!text)
         return false;
     if (imk_quantity_parse(text, text + size, imk_unit_of(unit).dimension, 1, value, &sigma, &count,
@@ -27,7 +35,7 @@ bool quantity_read(PyObject *object, const char *name, const char *unit, double 
 
 static bool choice_read(PyObject *object, const setting *row, int *value)
 {
-    const char *text = PyUnicode_AsUTF8AndSize(object, NULL);
+    const char *text = utf8_of(object, NULL);
     if (!text)
         return false;
     const size_t length = strlen(text);
@@ -46,7 +54,7 @@ bool unit_read(PyObject *object, const char *name, imk_unit *unit)
 {
     Py_ssize_t size;
     imk_error error;
-    const char *text = PyUnicode_AsUTF8AndSize(object, &size);
+    const char *text = utf8_of(object, &size);
     if (!text)
         return false;
     if (imk_unit_parse(text, text + size, unit, &error) == IMK_OK)
@@ -93,7 +101,7 @@ static bool value_read(PyObject *object, const setting *row, void *at)
         *(uint64_t *)at = PyLong_AsUnsignedLongLong(object);
         return !PyErr_Occurred();
     case SETTING_TEXT:
-        *(const char **)at = PyUnicode_AsUTF8AndSize(object, NULL);
+        *(const char **)at = utf8_of(object, NULL);
         return *(const char **)at != NULL;
     case SETTING_CHOICE:
         return choice_read(object, row, at);
@@ -110,7 +118,7 @@ bool settings_read(PyObject *dictionary, size_t count, const setting *rows, void
     PyObject *key, *value;
     Py_ssize_t at = 0;
     while (PyDict_Next(dictionary, &at, &key, &value)) {
-        const char *name = PyUnicode_AsUTF8AndSize(key, NULL);
+        const char *name = utf8_of(key, NULL);
         size_t k = 0;
         if (!name)
             return false;

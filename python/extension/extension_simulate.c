@@ -306,7 +306,7 @@ static PyObject *simulation_left(PyObject *self, PyObject *none)
 
 static PyObject *simulation_findings(PyObject *self, PyObject *name)
 {
-    const char *motion = PyUnicode_AsUTF8AndSize(name, NULL);
+    const char *motion = utf8_of(name, NULL);
     return motion ? list_findings(&((simulation *)self)->findings, motion, "the model") : NULL;
 }
 

@@ -49,8 +49,8 @@ static PyObject *quantity(PyObject *module, PyObject *const *args, Py_ssize_t co
     (void)module;
     if (!arguments("quantity", count, 3))
         return NULL;
-    const char *name = PyUnicode_AsUTF8AndSize(args[0], NULL);
-    const char *unit = name ? PyUnicode_AsUTF8AndSize(args[2], NULL) : NULL;
+    const char *name = utf8_of(args[0], NULL);
+    const char *unit = name ? utf8_of(args[2], NULL) : NULL;
     return unit && quantity_read(args[1], name, unit, &value) ? PyFloat_FromDouble(value) : NULL;
 }
 
@@ -66,9 +66,9 @@ static PyObject *quantities(PyObject *module, PyObject *const *args, Py_ssize_t 
     (void)module;
     if (!arguments("quantities", count, 3))
         return NULL;
-    const char *name = PyUnicode_AsUTF8AndSize(args[0], NULL);
-    const char *unit = name ? PyUnicode_AsUTF8AndSize(args[2], NULL) : NULL;
-    const char *text = unit ? PyUnicode_AsUTF8AndSize(args[1], &size) : NULL;
+    const char *name = utf8_of(args[0], NULL);
+    const char *unit = name ? utf8_of(args[2], NULL) : NULL;
+    const char *text = unit ? utf8_of(args[1], &size) : NULL;
     if (!text)
         return NULL;
     if (imk_quantity_parse(text, text + size, imk_unit_of(unit).dimension, NUMBERS_MAX, value,

@@ -37,6 +37,8 @@ class Log(Mapping[str, Any]):
         return 1.0 / self.interval if self.interval else math.nan
 
     def __getitem__(self, name: str) -> _arrays.Array:
+        if name not in self._columns:
+            raise KeyError(f"{name!r}; there are: {', '.join(self._columns)}")
         return _arrays.of_buffer(self._columns[name])
 
     def __iter__(self) -> Iterator[str]:
