@@ -11,7 +11,10 @@
 #   make experiments-all  run them all and renew experiments/results
 #   make faults  let memory, files and the disk fail, call by call, under every verb: some minutes
 #   make fuzz    feed the parsers with random input for a while
+#   make octave  build/octave: functions of GNU Octave; runs their tests
 #   make mpi     build/imukit-mpi too: campaigns on many machines (Open MPI)
+#   make python  the Python package: a wheel in build/dist, and its tests
+#   make install-python  install that wheel for this user's /usr/bin/python3
 #   make install [PREFIX=/usr/local] [DESTDIR=]
 #   make deps    only install the Debian packages that are missing
 #   make clean
@@ -29,7 +32,7 @@ quiet = >$(BUILD)/make.log 2>&1 || { cat $(BUILD)/make.log; exit 1; }
 configure = mkdir -p $(BUILD) && $(alone) cmake -S . -B $(BUILD) -D CMAKE_BUILD_TYPE=Release
 compile = $(alone) cmake --build $(BUILD) -j $(JOBS)
 
-.PHONY: all demo test check tidy-deep sanitize-all bench experiments experiments-all faults fuzz mpi install deps clean help
+.PHONY: all demo test check tidy-deep sanitize-all bench experiments experiments-all faults fuzz octave mpi python install-python install deps clean help
 
 all:
 	@tools/install_dependencies.sh build
@@ -84,10 +87,24 @@ fuzz:
 	@tools/install_dependencies.sh build fuzz
 	@$(alone) tools/run_fuzz
 
+octave:
+	@tools/install_dependencies.sh build octave
+	@mkdir -p build-check
+	@$(alone) BUILD=$(BUILD) tools/check_octave.sh
+
 mpi:
 	@tools/install_dependencies.sh build mpi
 	@$(configure) -D IMUKIT_MPI=ON $(quiet)
 	@$(compile) --target imukit-mpi
+
+python:
+	@tools/install_dependencies.sh build python
+	@$(configure) $(quiet)
+	@$(alone) BUILD=$(BUILD) tools/build_wheel.sh
+	@$(alone) BUILD=$(BUILD) tools/test_wheel.sh
+
+install-python: python
+	@/usr/bin/python3 -m pip install --user --force-reinstall --no-deps --break-system-packages $(BUILD)/dist/*.whl
 
 install: all
 	@cmake --install $(BUILD) --prefix $(PREFIX)

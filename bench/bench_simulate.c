@@ -9,6 +9,7 @@
  *   complete_against_loop the same against the C++ loop, which has white noise and random walk only
  *   terms one by one      each alone, against the normals it draws */
 #include "bench.h"
+#include "complete_model.h"
 
 #include "imukit/simulate.h"
 #include "imukit/thread_pool.h"
@@ -53,127 +54,6 @@ static void run_draws(void *context)
         bench_use(block);
         left -= count;
     }
-}
-
-static imk_axes axes(double value)
-{
-    return (imk_axes){.value = {value, value, value}};
-}
-
-static void each_triad(imk_model *model, void (*set)(imk_triad *triad))
-{
-    set(&model->gyro);
-    set(&model->accel);
-}
-
-static void set_white(imk_triad *triad)
-{
-    triad->noise.white = axes(1e-3);
-}
-
-static void set_walk(imk_triad *triad)
-{
-    triad->noise.random_walk = axes(1e-5);
-}
-
-static void set_flicker(imk_triad *triad)
-{
-    triad->noise.bias_instability = axes(1e-4);
-}
-
-static void set_gauss_markov(imk_triad *triad)
-{
-    triad->noise.gauss_markov_count = 1;
-    triad->noise.gauss_markov[0].sigma = axes(1e-4);
-    triad->noise.gauss_markov[0].correlation_time = axes(300.0);
-}
-
-static void set_quantization(imk_triad *triad)
-{
-    triad->noise.quantization = axes(1e-6);
-}
-
-static void set_sinusoid(imk_triad *triad)
-{
-    triad->noise.sinusoid_count = 1;
-    triad->noise.sinusoid[0].amplitude = axes(1e-3);
-    triad->noise.sinusoid[0].frequency = axes(20.0);
-}
-
-static void set_resonance(imk_triad *triad)
-{
-    triad->noise.resonance_count = 1;
-    triad->noise.resonance[0].sigma = axes(1e-3);
-    triad->noise.resonance[0].frequency = axes(20.0);
-    triad->noise.resonance[0].q = axes(12.0);
-}
-
-static imk_rows rows(double value)
-{
-    imk_rows r = {.value = {{0.0}}};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            r.value[i][j] = i == j ? 0.0 : value * (i + 2 * j + 1);
-    return r;
-}
-
-static imk_temperature_polynomial cubic(double value)
-{
-    imk_temperature_polynomial t = {
-        .order = 3, .reference = 298.0, .minimum = 250.0, .maximum = 350.0};
-    for (int i = 0; i < 3; i++)
-        t.coefficient[i] = axes(value);
-    return t;
-}
-
-static void set_complete_noise(imk_triad *triad)
-{
-    set_white(triad);
-    set_walk(triad);
-    set_flicker(triad);
-    set_gauss_markov(triad);
-    set_quantization(triad);
-    triad->noise.gauss_markov_count = 2;
-    triad->noise.gauss_markov[1].sigma = axes(2e-4);
-    triad->noise.gauss_markov[1].correlation_time = axes(20.0);
-}
-
-static void set_deterministic(imk_triad *triad)
-{
-    triad->bias.fixed = axes(1e-3);
-    triad->bias.repeatability = axes(1e-3);
-    triad->bias.temperature = cubic(1e-6);
-    triad->bias.temperature_rate = axes(1e-3);
-    triad->bias.warm_up_amplitude = axes(1e-3);
-    triad->bias.warm_up_time.value = 300.0;
-    triad->bias.hysteresis = axes(1e-4);
-    triad->scale_factor.fixed = axes(1e-4);
-    triad->scale_factor.repeatability = axes(1e-4);
-    triad->scale_factor.temperature = cubic(1e-7);
-    triad->nonlinearity.k2 = triad->nonlinearity.koq = axes(1e-5);
-    triad->nonlinearity.k3 = axes(1e-6);
-    triad->nonlinearity.asymmetry = axes(1e-4);
-    triad->misalignment = rows(1e-4);
-    triad->cross_axis = rows(2e-4);
-    triad->dead_band = axes(1e-6);
-    triad->range = axes(100.0);
-}
-
-static void set_complete(imk_triad *triad)
-{
-    set_complete_noise(triad);
-    set_deterministic(triad);
-}
-
-static void set_everything(imk_model *model)
-{
-    each_triad(model, set_complete);
-    model->accel.nonlinearity.cross_products = rows(1e-6);
-    model->accel.lever_arm = rows(0.01);
-    model->gyro.g_sensitivity = rows(1e-6);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 6; j++)
-            model->gyro.g2_sensitivity.value[i][j] = 1e-8 * (i + j + 1);
 }
 
 /* A motion known row by row, and a temperature that rises and falls as a table says, without the
@@ -297,8 +177,7 @@ static void bench_complete(const char *isa)
     imk_model model;
     imk_model_default(&model);
     set_everything(&model);
-    /* white, walk, two Gauss-Markov, and flicker's 2 + 1/3 */
-    draws normals = {imk_random_seeded(1), 633};
+    draws normals = {imk_random_seeded(1), COMPLETE_NORMALS};
     double ours = (double)INFINITY, drawing = (double)INFINITY, loop = (double)INFINITY;
     const imk_simulation simulation = simulation_of(&motion);
     void *memory = memory_for(&model, &simulation);
@@ -325,7 +204,7 @@ int main(void)
     const char *isa = imk_kernel_name(imk_random_seeded(0).kernel);
     bench_against_loop(isa);
     bench_complete(isa);
-    bench_against_normals("complete_noise", set_complete_noise, 633, isa);
+    bench_against_normals("complete_noise", set_complete_noise, COMPLETE_NORMALS, isa);
     bench_against_normals("white", set_white, 100, isa);
     bench_against_normals("random_walk", set_walk, 100, isa);
     bench_against_normals("gauss_markov", set_gauss_markov, 100, isa);

@@ -16,6 +16,13 @@ target_include_directories(imukit-command PRIVATE cli)
 set_target_properties(imukit-command PROPERTIES OUTPUT_NAME imukit)
 target_link_libraries(imukit-command PRIVATE imukit-io m)
 
+# The verbs for programs that run them, as the gateway of matlab/ does. From an archive the linker
+# takes what is missing, and so neither main() nor cli/shell/voice.c, in whose place they have their own.
+add_library(imukit-verbs STATIC EXCLUDE_FROM_ALL $<TARGET_OBJECTS:imukit-command-objects>
+            cli/campaign/campaign_run.c)
+target_include_directories(imukit-verbs PRIVATE cli)
+target_link_libraries(imukit-verbs PUBLIC imukit-io)
+
 # A compiler of MPI without its headers, as openmpi-bin alone is, stops find_package() with an error.
 if(IMUKIT_MPI STREQUAL AUTO)
   find_program(imukit_mpi_compiler mpicc)

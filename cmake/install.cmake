@@ -5,6 +5,7 @@
 include(CMakePackageConfigHelpers)
 set(package_directory ${CMAKE_INSTALL_LIBDIR}/cmake/imukit)
 
+install(DIRECTORY schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/imukit FILES_MATCHING PATTERN "*.json")
 install(DIRECTORY include/imukit DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         FILES_MATCHING PATTERN "*.h")
 

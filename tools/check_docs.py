@@ -11,10 +11,12 @@ Each page has a folder of its own, which looks like the root of the repository. 
 block follows from its language:
 
     sh           run, after those above it; it has to succeed
-    text         compared with what the sh block above it printed; a line … stands for any lines
+    python       run, in one session a page, with the package imukit of this build
+    text         compared with what the sh or python block above it printed, with the value of its
+                 last expression; a line … stands for any lines
     yaml, csv    a whole file: the command has to accept it
     json         parsed
-    c, python    compiled; run
+    c            compiled
 
 A comment right before a block, which no reader of the page sees, says more:
 
@@ -23,6 +25,7 @@ A comment right before a block, which no reader of the page sees, says more:
     <!-- exit: CODE -->         the sh block ends so
     <!-- before: TEXT -->       stands before the C or Python; braces it opens are closed behind
     <!-- setup: COMMANDS -->    run where they stand: what a reader has and the page does not make
+    <!-- figure: NAME -->      the value of the python block is drawn in docs/images/NAME.svg
 
 Links have to lead somewhere, `--options` to be options, and an index.md to name all pages of its
 folder. Scratch is build-check/docs, where the folders of pages with faults stay."""
@@ -43,6 +46,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = (ROOT / os.environ.get("BUILD", "build")).resolve()
 SCRATCH = ROOT / "build-check" / "docs"
 ENVIRONMENT = {**os.environ, "PATH": f"{BUILD}:{os.environ['PATH']}", "LC_ALL": "C.UTF-8"}
+PACKAGE = BUILD / "python-package"
 LIMIT = ["timeout", "120"]  # seconds for a block, on a busy machine
 SHELL = ["bash", "-euo", "pipefail", "-c"]
 COMPILE = ["gcc", "-std=c17", "-Wall", "-Wextra", "-Werror", "-Wno-unused", "-fsyntax-only",
@@ -53,7 +57,7 @@ YAML = {  # what a file holds, by a key, and a command that reads it
     "instrument": "imukit physics {} --show",
     "imukit": "imukit convert {} accepted.json",
 }
-MARKER = re.compile(r"<!--\s*(not run|file|exit|before|setup):\s*(.*?)\s*-->", re.S)
+MARKER = re.compile(r"<!--\s*(not run|file|exit|before|setup|figure):\s*(.*?)\s*-->", re.S)
 OTHER_PROGRAMS = re.compile(r"sbatch|cmake|pkg-config|tools/")
 Block = collections.namedtuple("Block", "line kind lines markers")
 
@@ -116,6 +120,7 @@ class Page:
         self.name, self.text, self.lines = name, text, text.split("\n")
         self.complaints, self.done, self.reasons = [], collections.Counter(), collections.Counter()
         self.printed, self.stale, self.seconds = None, [], 0.0
+        self.session, self.figures = None, {}
         self.folder = SCRATCH / name.replace("/", "-").removesuffix(".md")
 
     def complain(self, line, text):
@@ -133,6 +138,8 @@ class Page:
                 self.check_block(block)
         except (ValueError, IndexError):
             self.complain(len(self.lines), "a block or a comment has no end")
+        if self.session:
+            self.session.communicate()
         if not self.complaints:
             shutil.rmtree(self.folder)
         self.seconds = time.monotonic() - begin
@@ -207,8 +214,31 @@ class Page:
                  "\n".join([before, *block.lines, behind, ""]))
 
     def check_python(self, block):
-        self.run(block, [sys.executable, "-"],
-                 "\n".join([block.markers.get("before", ""), *block.lines]))
+        if not self.session:
+            self.session = subprocess.Popen(
+                ["/usr/bin/python3", ROOT / "tools/python_session.py"], cwd=self.folder, text=True,
+                env={**ENVIRONMENT, "PYTHONPATH": PACKAGE}, stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE)
+        code = "\n".join([block.markers.get("before", ""), *block.lines])
+        self.session.stdin.write(json.dumps({"code": code}) + "\n")
+        self.session.stdin.flush()
+        answer = json.loads(self.session.stdout.readline())
+        self.printed = [line.rstrip() for line in answer["printed"].rstrip().split("\n")]
+        if answer["failed"]:
+            self.complain(block.line, f"the python block fails:\n{indented(self.printed[-12:])}")
+        if "figure" in block.markers:
+            self.check_figure(block, answer["figure"])
+
+    def check_figure(self, block, drawn):
+        """A figure is there and about as long as what is drawn now: the last digits of estimates
+        depend on the machine."""
+        file = ROOT / "docs/images" / f"{block.markers['figure']}.svg"
+        there = len(file.read_text()) if file.exists() else 0
+        if not drawn:
+            self.complain(block.line, "the value of the python block has no figure")
+        elif not 0.8 < len(drawn) / (there or 1) < 1.25:
+            self.complain(block.line, f"{file.name} is not what is drawn")
+        self.figures[file] = drawn or ""
 
     def check_words(self, options):
         """Links, options and stray commands between the blocks."""
@@ -240,6 +270,10 @@ class Page:
         for block, now in reversed(self.stale):
             self.lines[block.line:block.line + len(block.lines)] = now
         (ROOT / self.name).write_text("\n".join(self.lines))
+
+    def update_figures(self):
+        for file, drawn in self.figures.items():
+            file.write_text(drawn)
 
 
 def anchors_of(file):
@@ -315,10 +349,17 @@ def check_the_check():
     shutil.rmtree(page.folder)
 
 
+def make_package():
+    """The package that the python blocks import."""
+    subprocess.run([ROOT / "tools/build_package.sh", PACKAGE, "/usr/bin/python3"],
+                   env={**os.environ, "BUILD": str(BUILD)}, check=True)
+
+
 def main(arguments):
     subprocess.run(["cmake", "-S", ROOT, "-B", BUILD], stdout=subprocess.DEVNULL, check=True)
     subprocess.run(["cmake", "--build", BUILD, "-j", str(os.cpu_count()), "--target",
                     "imukit-command"], stdout=subprocess.DEVNULL, check=True)
+    make_package()
     check_the_check()
     wanted = tuple(name for name in arguments if name != "--update") or ("",)
     pages = [page for page in pages_of_everything() if page.name.startswith(wanted)]
@@ -337,6 +378,8 @@ def main(arguments):
     if "--update" in arguments:
         for page in filter(lambda page: page.stale, pages):
             page.update()
+        for page in pages:
+            page.update_figures()
     files = sum(count for kind, count in done.items() if kind not in ("sh", "text", "setup"))
     print(f"{len(pages)} pages: {done['sh']} blocks run, {done['text']} compared, {files} files and "
           f"programs, {sum(reasons.values())} not run")

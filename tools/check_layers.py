@@ -30,11 +30,11 @@ RANK = {module: rank for rank, modules in enumerate(LAYERS) for module in module
 PUBLIC = {
     "base": "attitude decimal distributions elementary executor fourier least_squares "
             "linear_algebra names random samples status units utf8",
-    "model": "correct device_sensitivity distort model model_join model_parameter model_unstated "
-             "technology_map",
+    "model": "correct device_sensitivity distort model model_join model_parameter model_path "
+             "model_unstated technology_map",
     "noise": "filter_noise noise",
     "motion": "earth motion motion_script",
-    "simulate": "simulate",
+    "simulate": "sensor simulate",
     "identify": "allan allan_fit allan_gaps allan_stream identify identify_joint identify_plan "
                 "identify_record noise_map record_screen spectrum",
     "compensate": "compensate firmware",

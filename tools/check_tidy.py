@@ -18,6 +18,7 @@ import hashlib
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -46,6 +47,10 @@ def own_flags(name, text):
                        ("avx512.c", ["-mavx512f", "-mavx512dq"])]:
         if name.endswith(end):
             return flags
+    if "#include <mex.h>" in text:
+        place = shutil.which("mkoctfile") and subprocess.run(
+            ["mkoctfile", "-p", "OCTINCLUDEDIR"], capture_output=True, text=True).stdout.strip()
+        return ["-isystem", place] if place else None
     if "#include <hdf5.h>" in text:
         return package("hdf5-serial", "hdf5")
     return package("mpi-c") if name.endswith("_mpi.c") else []
@@ -120,7 +125,7 @@ def main():
     os.chdir(ROOT)
     PASSED.mkdir(parents=True, exist_ok=True)
     # The largest first, so that nobody waits for them at the end.
-    files = sorted((path for folder in ["src", "cli", "examples", "fuzz"]
+    files = sorted((path for folder in ["src", "cli", "matlab", "examples", "fuzz"]
                     for path in pathlib.Path(folder).rglob("*.c")),
                    key=lambda path: -path.stat().st_size)
     batches = [(flags, group[i:i + FILES_AT_ONCE])

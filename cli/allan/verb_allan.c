@@ -92,7 +92,7 @@ static double *parse_times(const char *text, size_t *count, int *code)
 {
     double *times = malloc((strlen(text) + 1) * sizeof *times);
     *count = 0;
-    *code = times ? -1 : command_failed("memory is exhausted");
+    *code = times ? -1 : command_failed_by("memory", NULL, NULL, "memory is exhausted");
     for (const char *item = text; times && *code < 0;) {
         size_t length = strcspn(item, ",");
         double tau, sigma;

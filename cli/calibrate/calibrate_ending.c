@@ -2,6 +2,7 @@
 /* What came out, or why nothing did: messages, the model file, what is shown. */
 #include "calibrate_parts.h"
 #include "shell/model_changes.h"
+#include "shell/voice.h"
 
 #include <stdlib.h>
 
@@ -13,7 +14,7 @@ static const char *given_model(const calibrate_options *o)
 int session_done(const session *b, imk_status status, const imk_error *error)
 {
     const imk_calibrate_log *found = b->found;
-    const bool told = status != IMK_OK && imk_findings_failure(&found->findings);
+    const imk_finding *failure = status != IMK_OK ? imk_findings_failure(&found->findings) : NULL;
     const char *path = found->failed < found->count ? found->record[found->failed].path : NULL;
     char text[1000];
     for (size_t k = 0; k < found->findings.count; k++) {
@@ -22,14 +23,15 @@ int session_done(const session *b, imk_status status, const imk_error *error)
         if (f->level == IMK_FINDING_WARNING)
             command_warn(imk_finding_code(f), "%s", text);
         else if (f->level == IMK_FINDING_NOTE)
-            command_note("%s", text);
+            command_note(imk_finding_code(f), "%s", text);
     }
     if (command_unless_memory(status) == IMK_OK)
         return -1;
-    if (told && status == IMK_ERROR_ARGUMENT)
+    if (failure && status == IMK_ERROR_ARGUMENT)
         return command_misused("%s", text);
-    if (told || imk_calibrate_failure(found, error, text, sizeof text) > 0)
-        return command_failed("%s", text);
+    if (failure || imk_calibrate_failure(found, error, text, sizeof text) > 0)
+        return command_failed_by(failure ? imk_finding_code(failure) : NULL, error, path, "%s",
+                                 text);
     const bool of_name = status == IMK_ERROR_KEY_UNKNOWN || status == IMK_ERROR_RANGE ||
                          status == IMK_ERROR_WORKSPACE;
     if (b->options->settings.estimate && !found->result && of_name && found->failed == found->count)
@@ -57,12 +59,12 @@ static void show_next(const session *b, bool useless, imk_result *result)
 /* What was warned of on the way here belongs to the verdict, and what that warns of is told too. */
 static imk_verdict assess(const session *b, imk_result *result)
 {
-    const size_t count = command_warning_count();
-    imk_message *before = command_memory(NULL, (count + 1) * sizeof *before);
-    for (size_t k = 0; k < count; k++) {
-        const command_warning *warning = command_warning_get(k);
-        before[k] = (imk_message){
-            .level = IMK_FINDING_WARNING, .code = warning->code, .text = warning->message};
+    size_t count = 0;
+    imk_message *before = command_memory(NULL, (told_warnings() + 1) * sizeof *before);
+    for (size_t k = 0; k < told_count(); k++) {
+        const told *t = told_get(k);
+        if (t->level == IMK_FINDING_WARNING)
+            before[count++] = (imk_message){.level = t->level, .code = t->code, .text = t->message};
     }
     const imk_verdict v = imk_calibrate_verdict(b->found, count, before, result);
     free(before);
@@ -94,18 +96,19 @@ int session_show(session *b)
     const imk_verdict verdict = assess(b, result);
     const bool useless = imk_verdict_level(&verdict) == IMK_FINDING_FAILURE;
     const bool writes = !useless || o->anyway;
-    const int end = (useless && !o->anyway) || (o->strict && command_warning_count() > 0)
-                        ? EXIT_FAILED
-                        : EXIT_DONE;
+    const int end =
+        (useless && !o->anyway) || (o->strict && told_warnings() > 0) ? EXIT_FAILED : EXIT_DONE;
     int code = -1;
     if (writes)
         code = write_model(b);
     else if (o->output)
-        command_note("%s is not written (--anyway would)", o->output);
+        command_note("not_written", "%s is not written (--anyway would)", o->output);
     if (code >= 0) {
         imk_result_free(result);
         return code;
     }
+    if (writes)
+        voice_model(model);
     imk_show_calibrate_log(b->found, &verdict, o->poses, result);
     imk_result_for(result, IMK_FOR_PAGE);
     show_model(result, "Model file", &b->found->model);

@@ -14,15 +14,18 @@ static int tell(const imk_calibrate_record *record, imk_status status, const imk
         if (f->level == IMK_FINDING_WARNING)
             command_warn(imk_finding_code(f), "%s", text);
         else if (f->level == IMK_FINDING_NOTE)
-            command_note("%s", text);
+            command_note(imk_finding_code(f), "%s", text);
     }
     if (status == IMK_OK)
         return -1;
     if (!error->found[0]) /* a record that is too large has the message of its reader */
         (void)command_unless_memory(status);
-    if (!imk_findings_failure(&record->loaded))
+    const imk_finding *failure = imk_findings_failure(&record->loaded);
+    if (!failure)
         return command_log_error(error, record->path);
-    return status == IMK_ERROR_ARGUMENT ? command_misused("%s", text) : command_failed("%s", text);
+    return status == IMK_ERROR_ARGUMENT
+               ? command_misused("%s", text)
+               : command_failed_by(imk_finding_code(failure), error, record->path, "%s", text);
 }
 
 /* A log, or a table, which needs no times. */

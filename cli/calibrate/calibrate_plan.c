@@ -128,9 +128,11 @@ static int make(plan *p)
     const imk_status status =
         imk_calibrate_plan_run(p->b->found->calibration, &p->settings, NULL, &p->made, &error);
     if (status == IMK_ERROR_KEY_MISSING && strstr(error.field, "noise"))
-        return command_failed("%s states no noise, so the length of the test cannot be computed: "
-                              "identify the noise from a log at rest (imukit identify)",
-                              p->b->path[0]);
+        return command_failed_by(
+            "no_noise", NULL, p->b->path[0],
+            "%s states no noise, so the length of the test cannot be computed: "
+            "identify the noise from a log at rest (imukit identify)",
+            p->b->path[0]);
     return command_unless_memory(status) == IMK_OK ? -1 : command_error(&error, NULL);
 }
 

@@ -246,42 +246,28 @@ static int check_means(const session *b)
 static int check_used(const session *b)
 {
     const calibrate_options *o = b->options;
-    bool referenced = false, turned = false, turns = false, thermal = false;
-    bool magnetic = false, compass = false;
+    bool referenced = false, turns = false, thermal = false, compass = false;
     for (size_t k = 0; k < b->count && !b->settings.repeatability; k++) {
         const imk_procedure p = b->procedure[k];
         turns = turns || p == IMK_PROCEDURE_TURNS;
-        turned = turned || turns || p == IMK_PROCEDURE_FERRARIS;
         thermal = thermal || p == IMK_PROCEDURE_THERMAL;
         compass = compass || p == IMK_PROCEDURE_MAGNETOMETER;
-        magnetic = magnetic || p == IMK_PROCEDURE_MAGNETOMETER || p == IMK_PROCEDURE_MULTIPOSITION;
         referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
                      p == IMK_PROCEDURE_CENTRIFUGE || p == IMK_PROCEDURE_SPIN;
     }
-    const char *none = "--%s is not used by --procedure %s, only by %s: leave it out";
     if (o->motion && !referenced && !thermal)
-        return command_misused(none, "motion", o->procedure,
-                               "rate-table, tumble, centrifuge, spin and thermal");
+        return command_misused("--motion is not used by --procedure %s, only by rate-table, "
+                               "tumble, centrifuge, spin and thermal: leave it out",
+                               o->procedure);
     if (o->motion_offset && !o->motion)
         return command_misused("--motion-offset is used with --motion only: add --motion");
     if (o->settings.estimate && compass)
         return command_misused("--estimate names terms of gyros and accelerometers; --procedure "
                                "magnetometer always estimates the same: leave one of them out");
-    if ((o->field || o->dip) && !magnetic)
-        return command_misused(none, o->field ? "field" : "dip", o->procedure,
-                               "multiposition and magnetometer");
-    if (o->settings.table_axis >= 0 && !referenced)
-        return command_misused(none, "table-axis", o->procedure, "rate-table");
-    if (!isnan(o->settings.turn_angle) && !turned)
-        return command_misused(none, "turn-angle", o->procedure, "ferraris and turns");
     if (turns && o->settings.turn_angle <= 0)
         return command_misused("--turn-angle: with --procedure turns the angle is above 0; a label "
                                "such as \"z -90deg\" states which way a turn goes, else each goes "
                                "as its gyro reads");
-    if (o->temperature_order.given && !thermal)
-        return command_misused(none, "temperature-order", o->procedure, "thermal");
-    if (!isnan(o->settings.reference_temperature) && !thermal)
-        return command_misused(none, "reference-temperature", o->procedure, "thermal");
     return o->settings.pose_means ? check_means(b) : -1;
 }
 
@@ -302,9 +288,10 @@ static int check_closed_form(const session *b)
 
 /* ---- all of them ----------------------------------------------------------------------------- */
 
-/* Settings that exclude each other. */
-static int refused(const imk_error *error)
+/* Settings that exclude each other, or that nothing looks at. */
+static int refused(const calibrate_options *o, const imk_error *error)
 {
+    char name[sizeof error->field];
     if (strcmp(error->field, "gravity") == 0)
         return command_misused(
             "--gravity %.6g m/s^2: expected 9.5 to 10.1 m/s^2, the range on Earth", error->value);
@@ -313,7 +300,13 @@ static int refused(const imk_error *error)
                                "stands in the housing; add a log of sixposition, ferraris, tumble "
                                "or rate-table, or choose upper-triangular, lower-triangular or "
                                "symmetric");
-    return command_error(error, NULL);
+    if (error->status != IMK_ERROR_CONFLICT || strncmp(error->expected, "only by", 7) != 0)
+        return command_error(error, NULL);
+    snprintf(name, sizeof name, "%s", error->field);
+    for (char *c = name; *c; c++)
+        *c = *c == '_' ? '-' : *c;
+    return command_misused("--%s is not used by --procedure %s, %s", name, o->procedure,
+                           error->expected);
 }
 
 int session_choose(session *b)
@@ -341,7 +334,7 @@ int session_choose(session *b)
         code = take_field(b);
     if (code < 0 && command_unless_memory(imk_calibrate_log_create(
                         b->count, b->procedure, &b->settings, NULL, &b->found, &error)) != IMK_OK)
-        code = refused(&error);
+        code = refused(o, &error);
     return code;
 }
 

@@ -3,6 +3,7 @@
  * matters, and the library keeps it. */
 #define _POSIX_C_SOURCE 200809L
 #include "campaign_job.h"
+#include "shell/voice.h"
 
 #include <signal.h>
 #include <stdlib.h>
@@ -105,10 +106,11 @@ static int start(campaign_job *job, size_t at_once, const char *path, bool value
         return command_error(&error, NULL);
     if (values_wanted && (job->runs > SIZE_MAX / sizeof(double) / job->run_values ||
                           !(job->values = malloc(job->runs * job->run_values * sizeof(double)))))
-        return command_failed("memory is exhausted: %llu runs are too many to hold at once",
-                              (unsigned long long)job->runs);
+        return command_failed_by("memory", NULL, NULL,
+                                 "memory is exhausted: %llu runs are too many to hold at once",
+                                 (unsigned long long)job->runs);
     if (!make_batches(job, at_once))
-        return command_failed("memory is exhausted");
+        return command_failed_by("memory", NULL, NULL, "memory is exhausted");
     if (job->values && read_values(job, &error) != IMK_OK)
         return command_error(&error, NULL);
     return -1;
@@ -127,8 +129,8 @@ int campaign_job_open(campaign_job *job, const imk_campaign *campaign, uint64_t 
     }
     if (job->writer) {
         if (job->due < runs)
-            command_note("%llu of %llu runs exist already", (unsigned long long)(runs - job->due),
-                         (unsigned long long)runs);
+            command_note("runs_exist", "%llu of %llu runs exist already",
+                         (unsigned long long)(runs - job->due), (unsigned long long)runs);
         catch_signals(path);
     }
     job->line = progress_begin("Monte Carlo", "runs", 1);
@@ -137,16 +139,6 @@ int campaign_job_open(campaign_job *job, const imk_campaign *campaign, uint64_t 
 
 /* ---- at work ---- */
 
-bool campaign_job_take(campaign_job *job, campaign_batch *batch)
-{
-    pthread_mutex_lock(&job->mutex);
-    const bool there = !job->failed && job->next < job->batch_count;
-    if (there)
-        *batch = job->batches[job->next++];
-    pthread_mutex_unlock(&job->mutex);
-    return there;
-}
-
 void campaign_job_fail(campaign_job *job, const imk_error *error)
 {
     pthread_mutex_lock(&job->mutex);
@@ -154,6 +146,21 @@ void campaign_job_fail(campaign_job *job, const imk_error *error)
         job->error = *error;
     job->failed = true;
     pthread_mutex_unlock(&job->mutex);
+}
+
+bool campaign_job_take(campaign_job *job, campaign_batch *batch)
+{
+    imk_error error;
+    if (voice_interrupted()) {
+        imk_error_set(&error, IMK_ERROR_CANCELLED, NULL, NULL, NULL);
+        campaign_job_fail(job, &error);
+    }
+    pthread_mutex_lock(&job->mutex);
+    const bool there = !job->failed && job->next < job->batch_count;
+    if (there)
+        *batch = job->batches[job->next++];
+    pthread_mutex_unlock(&job->mutex);
+    return there;
 }
 
 void campaign_job_bring(campaign_job *job, campaign_batch batch, const double *values)

@@ -57,28 +57,10 @@ int compensate_models(const compensate_options *o, const char *name, imk_model *
 
 int compensate_end(const compensate_options *o, imk_result *result)
 {
-    const int code = o->strict && command_warning_count() > 0 ? EXIT_FAILED : EXIT_DONE;
+    const int code = o->strict && told_warnings() > 0 ? EXIT_FAILED : EXIT_DONE;
     if (!o->json)
         show_aside(result);
     return show_end(result, &(show_options){.json = o->json, .quiet = true}, code);
-}
-
-/* --axes changes signs, which is wrong for counts because of their zero offset. */
-static int check_axes(const compensate_options *o, const imk_model *model,
-                      const imk_record_source *source)
-{
-    const imk_dimension counts = imk_unit_of("count").dimension;
-    for (size_t k = 0; k < source->column_count && o->log.file.axes; k++) {
-        const imk_log_column *column = &source->columns[k];
-        const imk_triad *triad = column->quantity == IMK_QUANTITY_ANGULAR_RATE     ? &model->gyro
-                                 : column->quantity == IMK_QUANTITY_SPECIFIC_FORCE ? &model->accel
-                                                                                   : NULL;
-        if (triad && triad->present && triad->sensitivity.value[0] != 0 &&
-            imk_dimension_equal(column->unit.dimension, counts))
-            return command_misused("--axes changes signs, and counts have a zero offset; "
-                                   "compensate first, then use imukit convert --axes");
-    }
-    return -1;
 }
 
 /* Errors of the model or of the output; all other errors concern the log. */
@@ -87,7 +69,12 @@ static int tell(const char *const *operands, const imk_compensate_log *log, imk_
 {
     const imk_findings none = {.count = 0}, *findings = log ? &log->findings : &none;
     const imk_finding *failure = imk_findings_failure(findings);
+    char text[400];
     log_input_note(operands[0], findings);
+    if (failure && strcmp(failure->code, "compensate:axes_of_counts") == 0) {
+        imk_finding_text(failure, text, sizeof text);
+        return command_misused("%s", text);
+    }
     if (failure && strcmp(failure->code, "model_refused") == 0)
         return command_error(error, operands[1]);
     if (failure && strcmp(failure->code, "not_written") == 0)
@@ -105,9 +92,6 @@ static int compensate(const compensate_options *o, const char *const *operands,
                             .decimals = (int)o->decimals.value};
     const imk_record_source source = imk_log_source(reader);
     const imk_record_sink sink = imk_log_sink_of(&written);
-    int code = check_axes(o, settings->terms ? settings->terms : whole, &source);
-    if (code >= 0)
-        return code;
     threaded_job t;
     threaded_job_begin(&t, operands[0], o->threads.value);
     imk_compensate_log *log;
@@ -115,8 +99,8 @@ static int compensate(const compensate_options *o, const char *const *operands,
         imk_compensate_log_run(&source, whole, settings, &sink, &t.job, &log, &error);
     threaded_job_end(&t);
     const imk_status ended = imk_log_sink_end(&written, status, &error);
-    code = status == IMK_OK && ended != IMK_OK ? command_error(&error, NULL)
-                                               : tell(operands, log, ended, &error);
+    int code = status == IMK_OK && ended != IMK_OK ? command_error(&error, NULL)
+                                                   : tell(operands, log, ended, &error);
     if (code < 0) {
         imk_result *result = show_begin("compensate");
         imk_show_compensate_log(log, operands[0], operands[1], result);

@@ -34,7 +34,8 @@ const option parameter_option_table[PARAMETER_OPTIONS] = {
      .help = "meaning of a number per sqrt(Hz), where the format leaves it open (vins, matlab)"},
     {"sensor", OPTION_TEXT, AT(sensor), .value = "NAME",
      .help = "name of the sensor, if the parameter file has several"},
-    JSON_OPTION(AT(json), "print as JSON what was assumed and left out"),
+    JSON_OPTION(AT(json),
+                "print as JSON what was written, assumed and left out; the output must be a file"),
     {"flicker", OPTION_CHOICE, AT(flicker), .value = "CHOICE",
      .choices = "random-walk|gauss-markov|two-gauss-markov|left-out",
      .help = "--to filter: the process that replaces bias instability, because no filter state can "
@@ -92,14 +93,19 @@ static void tell(const imk_parameter_notes *notes)
         if (notes->note[i].lost)
             command_warn("lost", "%s", notes->note[i].text);
         else
-            command_note("note: %s", notes->note[i].text);
+            command_note("assumed", "note: %s", notes->note[i].text);
+}
+
+void convert_show_file(const char *file, const char *format, imk_result *result)
+{
+    imk_result_text(result, "file", file);
+    imk_result_text(result, "format", format);
 }
 
 static void show_end_of(const char *file, imk_parameter_format format, imk_result *result)
 {
     const char *name = imk_parameter_format_name(format);
-    imk_result_text(result, "file", file);
-    imk_result_text(result, "format", name ? name : "model");
+    convert_show_file(file, name ? name : "model", result);
 }
 
 static void show_notes(const imk_parameter_notes *notes, imk_result *result)
@@ -151,8 +157,8 @@ static int write_target(const parameter_options *o, const imk_parameter_settings
     return command_log_error(&error, of_output ? NULL : in);
 }
 
-static int show(const parameter_options *o, imk_parameter_format from, const char *in,
-                const char *out, const imk_parameter_notes notes[2])
+int convert_show(const parameter_options *o, imk_parameter_format from, const char *in,
+                 const char *out, const imk_parameter_notes *notes)
 {
     imk_result *result = show_begin("convert");
     imk_result_object(result, "inputs");
@@ -161,7 +167,7 @@ static int show(const parameter_options *o, imk_parameter_format from, const cha
     imk_result_object(result, "result");
     show_end_of(out, (imk_parameter_format)o->to, result);
     imk_result_array(result, "notes");
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; notes && k < 2; k++) {
         tell(&notes[k]);
         show_notes(&notes[k], result);
     }
@@ -192,8 +198,6 @@ int convert_parameters(const parameter_options *options, double rate, const char
         return command_misused("--bias-instability-tau and --use-bounds are for parameter files of "
                                "other programs, and %s is a model; state the format with --to",
                                out);
-    if (options->json && strcmp(out, "-") == 0)
-        return command_misused("--json and the file would both go to standard output");
     imk_model *model = command_memory(NULL, sizeof *model);
     imk_parameter_notes *notes = command_zeroed(2 * sizeof *notes); /* of reading, of writing */
     imk_parameter_format format = IMK_PARAMETERS_UNKNOWN;
@@ -204,7 +208,7 @@ int convert_parameters(const parameter_options *options, double rate, const char
     if (code < 0)
         code = write_target(options, &settings, in, out, model, &notes[1]);
     if (code < 0)
-        code = show(options, format, in, out, notes);
+        code = convert_show(options, format, in, out, notes);
     free(notes);
     free(model);
     return code;

@@ -3,7 +3,9 @@
 #ifndef IMUKIT_CONVERT_PARAMETERS_H
 #define IMUKIT_CONVERT_PARAMETERS_H
 
-#include "shell/command.h"
+#include "shell/show.h"
+
+#include "imukit/parameter_file.h"
 
 /* The choice of --to that is a format of logs; it stands behind the others. */
 enum { CONVERT_TO_EUROC = IMK_PARAMETERS_FUSION + 1 };
@@ -31,5 +33,12 @@ int parameters_wanted(const parameter_options *options, const char *in, bool mod
 /* @param rate  [Hz], 0: not given. @return the exit code, messages printed */
 int convert_parameters(const parameter_options *options, double rate, const char *in,
                        const char *out);
+
+/* A file that was read or written, with its format. */
+void convert_show_file(const char *file, const char *format, imk_result *result);
+/* Tell what was converted, and finish. @param notes  those of reading and of writing; NULL: none
+ * @return the exit code */
+int convert_show(const parameter_options *options, imk_parameter_format from, const char *in,
+                 const char *out, const imk_parameter_notes *notes);
 
 #endif

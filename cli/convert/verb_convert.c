@@ -3,10 +3,12 @@
 #include "convert_parameters.h"
 #include "log/log_input.h"
 #include "shell/job_progress.h"
+#include "shell/show.h"
 
 #include "imukit/convert_log.h"
 #include "imukit/model_file.h"
 #include "imukit/names.h"
+#include "imukit/show.h"
 
 #include <math.h>
 
@@ -65,19 +67,17 @@ static void find_kinds(const char *in, const char *out, bool *from_model, bool *
 }
 
 /* The document is kept only within one format: JSON has no place for comments and layout. */
-static int convert_model(const char *in, const char *out)
+static int convert_model(const parameter_options *o, const char *in, const char *out)
 {
     imk_error error;
     imk_document *document = NULL;
     imk_model *model = command_memory(NULL, sizeof *model);
     int code = command_model(in, model, &document);
-    if (code < 0)
-        code = imk_model_write(out, model, document, &error) == IMK_OK
-                   ? EXIT_DONE
-                   : command_error(&error, NULL);
+    if (code < 0 && imk_model_write(out, model, document, &error) != IMK_OK)
+        code = command_error(&error, NULL);
     imk_document_free(document);
     free(model);
-    return code;
+    return code < 0 ? convert_show(o, IMK_PARAMETERS_UNKNOWN, in, out, NULL) : code;
 }
 
 static int parse_point(const char *text, double point[3])
@@ -114,7 +114,7 @@ static int tell(const char *in, const imk_findings *findings, imk_status status,
         return command_error(error, NULL);
     if (failure && strcmp(failure->code, "no_such_column") == 0) {
         imk_finding_text(failure, text, sizeof text);
-        return command_failed("%s", text);
+        return command_failed_by(imk_finding_code(failure), error, in, "%s", text);
     }
     if (!failure && status == IMK_ERROR_DIMENSION)
         return command_misused("--to-%s %s: expected %s", error->field, error->found,
@@ -174,6 +174,17 @@ static int select_euroc(const imk_log_reader *reader, const char *in, char names
     return -1;
 }
 
+static int show_log(const convert_options *o, const char *in, const imk_log_sink *written)
+{
+    imk_result *result = show_begin("convert");
+    imk_result_object(result, "inputs");
+    convert_show_file(in, "log", result);
+    imk_result_end(result);
+    imk_show_written("result", written->path, written->rows, written->column_count, written->column,
+                     result);
+    return show_end(result, &(show_options){.json = o->parameters.json, .quiet = true}, EXIT_DONE);
+}
+
 static int convert_log(convert_options *o, const char *in, const char *out)
 {
     imk_error error;
@@ -198,7 +209,7 @@ static int convert_log(convert_options *o, const char *in, const char *out)
     const imk_log_findings read = imk_log_findings_get(reader);
     written.origin = read.time_origin_nanoseconds;
     if (read.time_origin != 0 && !written.euroc && !imk_log_format_of(out)->keeps_epoch)
-        command_note("the times count from %.3f s, which is 0 in what is written",
+        command_note("time_origin", "the times count from %.3f s, which is 0 in what is written",
                      read.time_origin);
     threaded_job t;
     threaded_job_begin(&t, in, o->threads.value);
@@ -209,14 +220,15 @@ static int convert_log(convert_options *o, const char *in, const char *out)
     threaded_job_end(&t);
     const imk_log_findings done = imk_log_findings_get(reader);
     if (status == IMK_OK && done.not_finite > 0)
-        command_note("%zu of %zu rows have a value that is missing or no finite number: it is "
+        command_note("not_finite",
+                     "%zu of %zu rows have a value that is missing or no finite number: it is "
                      "written as it is",
                      done.not_finite, done.rows);
     const imk_status ended = imk_log_sink_end(&written, status, &error);
     code = status == IMK_OK && ended != IMK_OK ? command_error(&error, NULL)
                                                : tell(in, &findings, ended, &error);
     imk_log_close(reader);
-    return code < 0 ? EXIT_DONE : code;
+    return code < 0 ? show_log(o, in, &written) : code;
 }
 
 static int run(int count, char **words)
@@ -228,15 +240,16 @@ static int run(int count, char **words)
         return code;
     operands[1] = options_output_name(operands[1]);
     bool wanted;
+    if (o.parameters.json && strcmp(operands[1], "-") == 0)
+        return command_misused("--json and the file would both go to standard output");
     code = parameters_wanted(&o.parameters, operands[0], imk_is_script_name(operands[1]), &wanted);
     if (code >= 0)
         return code;
     if (wanted)
         return convert_parameters(&o.parameters, o.log.file.rate, operands[0], operands[1]);
-    if (o.parameters.json || o.parameters.sensor || o.parameters.density ||
-        o.parameters.use_bounds || o.parameters.bias_instability_tau > 0 ||
-        o.parameters.frame_rate > 0)
-        return command_misused("%s: --json, --sensor, --density, --bias-instability-tau, "
+    if (o.parameters.sensor || o.parameters.density || o.parameters.use_bounds ||
+        o.parameters.bias_instability_tau > 0 || o.parameters.frame_rate > 0)
+        return command_misused("%s: --sensor, --density, --bias-instability-tau, "
                                "--use-bounds and --frame-rate are for parameter files; state the "
                                "format with --from or --to",
                                operands[0]);
@@ -252,7 +265,7 @@ static int run(int count, char **words)
     if (from_model && (o.to_point || o.to.gravity_free))
         return command_misused("--to-point and --gravity-free are for logs, and %s is a model",
                                operands[0]);
-    return from_model ? convert_model(operands[0], operands[1])
+    return from_model ? convert_model(&o.parameters, operands[0], operands[1])
                       : convert_log(&o, operands[0], operands[1]);
 }
 

@@ -275,9 +275,11 @@ static int unknown(const char *name)
     free(names);
     free(all.of);
     if (text[0])
-        return command_failed("there is no device \"%s\"; did you mean %s?", name, text);
-    return command_failed("there is no device \"%s\"; the names are listed by: imukit devices",
-                          name);
+        return command_failed_by("name_unknown", NULL, NULL,
+                                 "there is no device \"%s\"; did you mean %s?", name, text);
+    return command_failed_by("name_unknown", NULL, NULL,
+                             "there is no device \"%s\"; the names are listed by: imukit devices",
+                             name);
 }
 
 static int run(int count, char **words)

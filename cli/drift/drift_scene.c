@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double day = 86400;
-
 /* ---- motion ---- */
 
 static int check_rest(const drift_options *o)
@@ -31,12 +29,14 @@ static int open_motion(const drift_options *o, drift_scene *s)
         return command_error(&error, o->motion);
     const imk_motion *motion = imk_motion_file_motion(s->motion);
     if (!motion->trajectory)
-        return command_failed(
+        return command_failed_by(
+            "no_position", NULL, o->motion,
             "%s: recorded rates and forces do not contain the true position of the unit; give a "
             "motion script or a table of poses (position and attitude)",
             o->motion);
     if (!motion->trajectory->earth)
-        return command_failed(
+        return command_failed_by(
+            "no_earth", NULL, o->motion,
             "%s: the motion is not on the Earth (`earth: no`), and navigation needs the Earth",
             o->motion);
     const char *note = imk_motion_file_note(s->motion);
@@ -138,79 +138,48 @@ int drift_stated_times(const char *name, const char *text, drift_stated *t)
     return -1;
 }
 
-/* The length of motion that can be navigated. */
-static double motion_length(const drift_scene *s)
+static int refuse_times(const drift_scene *s, const imk_error *error)
 {
-    return s->motion ? imk_motion_file_duration(s->motion) : (double)INFINITY;
-}
-
-/* The last row that is not past the end, whatever the rounding of its time. */
-static double last_row(double length, double rate)
-{
-    return floor(length * rate + 1e-6) / rate;
-}
-
-static int choose_duration(const drift_options *o, const drift_scene *s, double *duration)
-{
-    const double length = motion_length(s);
-    *duration = o->duration;
-    if (isnan(*duration))
-        *duration = s->want.asked && !o->times ? s->want.time
-                    : isinf(length)            ? day
-                                               : last_row(length, s->settings.rate);
-    if (!(*duration > 0))
-        return command_misused("--duration must be positive");
-    if (*duration > 1e8)
-        return command_misused("--duration %g s: expected at most three years (1e8 s)", *duration);
-    if (*duration * s->settings.rate < 1)
-        return command_misused("--duration %g s is less than a sample at %g Hz", *duration,
-                               s->settings.rate);
-    if (s->want.asked && s->want.time > *duration * (1 + 1e-12))
+    const double value = error->value;
+    if (strcmp(error->field, "motion") == 0)
+        return command_misused("%g s: the motion ends after %g s%s", value, error->limit,
+                               imk_motion_file_kind(s->motion) == IMK_MOTION_SCRIPT
+                                   ? " (or let it end with `then: hold`)"
+                                   : "");
+    if (strcmp(error->field, "want.time") == 0)
         return command_misused("--want asks for a time after the end: add --duration or leave it "
                                "out");
-    return -1;
-}
-
-/* The end of the aids, and the times behind it. */
-static int outage_times(const drift_options *o, const drift_scene *s, drift_stated *rows)
-{
-    static const double usual[] = {10, 60, 300};
-    const double begin = imk_drift_outage(&s->settings), length = motion_length(s);
-    const int code = o->outage ? drift_stated_times("outage", o->outage, rows) : -1;
-    if (code >= 0)
-        return code;
-    for (size_t i = 0; i < sizeof usual / sizeof usual[0] && !o->outage; i++)
-        if (begin + usual[i] <= length)
-            rows->at[rows->count++] = usual[i];
-    for (size_t i = 0; i < rows->count; i++)
-        rows->at[i] += begin;
-    rows->at[rows->count++] = begin;
-    return -1;
+    if (strcmp(error->field, "duration") != 0)
+        return command_error(error, NULL);
+    if (!(value > 0))
+        return command_misused("--duration must be positive");
+    if (value > 1e8)
+        return command_misused("--duration %g s: expected at most three years (1e8 s)", value);
+    return command_misused("--duration %g s is less than a sample at %g Hz", value,
+                           s->settings.rate);
 }
 
 static int choose_times(const drift_options *o, drift_scene *s)
 {
-    drift_stated rows = {0};
-    double duration = 0;
+    drift_stated times = {0}, outage = {0};
     imk_error error;
-    const bool outage = !o->times && isnan(o->duration) && !isnan(imk_drift_outage(&s->settings));
-    int code = o->times ? drift_stated_times("times", o->times, &rows)
-               : outage ? outage_times(o, s, &rows)
-                        : choose_duration(o, s, &duration);
+    int code = o->times ? drift_stated_times("times", o->times, &times) : -1;
+    if (code < 0 && o->outage)
+        code = drift_stated_times("outage", o->outage, &outage);
+    if (code < 0 && !(isnan(o->duration) || o->duration > 0))
+        code = command_misused("--duration must be positive");
     if (code >= 0)
         return code;
-    if (imk_drift_times_choose(duration, rows.count, rows.at, s->want.asked ? s->want.time : 0,
-                               s->settings.rate, o->plot || o->report || o->output,
-                               outage ? imk_drift_outage(&s->settings) : 0, NULL, &s->times,
-                               &error) != IMK_OK)
-        return command_error(&error, NULL);
-    const double length = motion_length(s), last = s->times.time[s->times.count - 1];
-    if (last > length + 1.5 / s->settings.rate)
-        return command_misused("%g s: the motion ends after %g s%s", last, length,
-                               imk_motion_file_kind(s->motion) == IMK_MOTION_SCRIPT
-                                   ? " (or let it end with `then: hold`)"
-                                   : "");
-    return -1;
+    const imk_drift_when when = {.duration = isnan(o->duration) ? 0.0 : o->duration,
+                                 .time_count = times.count,
+                                 .time = o->times ? times.at : NULL,
+                                 .outage_count = outage.count,
+                                 .outage = o->outage ? outage.at : NULL,
+                                 .motion = s->motion ? imk_motion_file_duration(s->motion) : 0.0,
+                                 .curves = o->plot || o->report || o->output};
+    return imk_drift_times_ask(&when, &s->settings, &s->want, NULL, &s->times, &error) == IMK_OK
+               ? -1
+               : refuse_times(s, &error);
 }
 
 int drift_scene_open(const drift_options *o, drift_scene *s)

@@ -192,6 +192,7 @@ static int open_models(work *w)
         const int added = code < 0 ? imk_model_complete(w->model[m]) : -1;
         if (added >= 0)
             command_note(
+                "completed",
                 "%s has no %s: perfect ones are taken, so that all errors are those of its "
                 "%s; imukit join %s MODEL -o UNIT.yaml adds those of another model",
                 w->name[m], added == IMK_GYRO ? "gyros" : "accelerometers",
@@ -273,10 +274,23 @@ static int show(const work *w)
 }
 
 /* A part of a campaign has no figures worth showing: print the next step instead. */
-static void show_shard(const work *w)
+static int show_shard(const work *w)
 {
-    printf("%s: %llu runs.\nNext, with all parts: imukit merge PART.h5... -o WHOLE.h5\n",
-           w->o->output, (unsigned long long)w->r->run_count);
+    const drift_options *o = w->o;
+    imk_result *result = show_begin("drift");
+    imk_result_object(result, "inputs");
+    imk_result_text(result, "model", w->name[0]);
+    imk_result_count(result, "seed", (long long)o->seed.value);
+    imk_result_text(result, "shard", o->shard);
+    imk_result_end(result);
+    imk_result_object(result, "result");
+    imk_result_text(result, "output", o->output);
+    imk_result_count(result, "runs", (long long)w->r->run_count);
+    imk_result_end(result);
+    imk_result_line(result,
+                    "%s: %llu runs.\nNext, with all parts: imukit merge PART.h5... -o WHOLE.h5",
+                    o->output, (unsigned long long)w->r->run_count);
+    return show_end(result, &(show_options){.json = o->json}, EXIT_DONE);
 }
 
 /* A message about the model names it; one about the settings does not. */
@@ -317,7 +331,7 @@ static int drift(work *w)
     if (code < 0 && o->monte_carlo.given)
         code = drift_runs(o, scene, w->r);
     if (code < 0 && o->shard)
-        show_shard(w);
+        code = show_shard(w);
     else if (code < 0)
         code = show(w);
     imk_drift_models_free(w->r);

@@ -15,7 +15,7 @@ static int tell(const evaluation *v, const char *path, imk_status status, const 
         if (strcmp(failure->code, of_several[k]) == 0) {
             char text[400];
             imk_finding_text(failure, text, sizeof text);
-            return command_failed("%s", text);
+            return command_failed_by(imk_finding_code(failure), error, NULL, "%s", text);
         }
     return log_input_tell(path, &v->log->findings, status, error);
 }

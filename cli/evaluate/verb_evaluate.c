@@ -160,8 +160,7 @@ static int evaluate_channel(const evaluation *v, imk_evaluate_channel *c)
 static int show(const evaluation *v)
 {
     const evaluate_options *o = v->options;
-    const int end =
-        o->strict && (v->missed || command_warning_count() > 0) ? EXIT_FAILED : EXIT_DONE;
+    const int end = o->strict && (v->missed || told_warnings() > 0) ? EXIT_FAILED : EXIT_DONE;
     imk_result *result = show_begin("evaluate");
     const imk_evaluate_shown shown = {.confidence = o->confidence,
                                       .path_count = v->path_count,

@@ -55,7 +55,9 @@ static int grade(grading *g, int assume_class)
             g->graded[m] ? imk_findings_failure(&g->graded[m]->findings) : NULL;
         if (why)
             imk_finding_text(why, text, sizeof text);
-        code = why ? command_failed("%s %s", g->name[m], text) : command_error(&error, g->name[m]);
+        code = why ? command_failed_by(imk_finding_code(why), &error, g->name[m], "%s %s",
+                                       g->name[m], text)
+                   : command_error(&error, g->name[m]);
     }
     return code;
 }
@@ -78,13 +80,13 @@ static int show(const grading *g, const grade_options *o)
     for (size_t m = 0; m < g->count; m++)
         show_model(result, g->name[m], g->model[m]);
     show_origin(result);
-    const int code = show_end(
+    const int code = o->plot && !stands
+                         ? command_failed("--map: the model has no value for this map")
+                         : EXIT_DONE;
+    return show_end(
         result,
         &(show_options){.report = o->report, .plot = stands ? o->plot : NULL, .json = o->json},
-        EXIT_DONE);
-    return code == EXIT_DONE && o->plot && !stands
-               ? command_failed("--map: the model has no value for this map")
-               : code;
+        code);
 }
 
 static int run(int count, char **words)

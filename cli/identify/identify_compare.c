@@ -55,9 +55,10 @@ static void label_logs(several_logs *s, const char *const *paths, growing_list *
 static int refuse_rates(const several_logs *s, size_t record)
 {
     const imk_even_record *first = &s->log[0]->record, *other = &s->log[record]->record;
-    return command_failed("%s was sampled at %.6g Hz, %s at %.6g Hz: runs of one sensor have "
-                          "one sampling rate; identify them separately, or with --devices",
-                          s->label[0], 1 / first->dt, s->label[record], 1 / other->dt);
+    return command_failed_by("rates_differ", NULL, s->label[record],
+                             "%s was sampled at %.6g Hz, %s at %.6g Hz: runs of one sensor have "
+                             "one sampling rate; identify them separately, or with --devices",
+                             s->label[0], 1 / first->dt, s->label[record], 1 / other->dt);
 }
 
 /* Why two logs cannot be compared. @return -1 or the exit code */
@@ -66,11 +67,12 @@ static int check_channels(const several_logs *s, size_t record)
     const imk_even_record *first = &s->log[0]->record, *other = &s->log[record]->record;
     if (imk_identify_comparable(s->log[0], s->log[record], false, NULL) == IMK_OK)
         return -1;
-    return command_failed("%s and %s do not have the same channels (%zu from %s on, %zu from %s "
-                          "on): only logs with the same columns can be compared",
-                          s->label[0], s->label[record], first->count,
-                          imk_even_record_column(first, 0)->name, other->count,
-                          imk_even_record_column(other, 0)->name);
+    return command_failed_by("column", NULL, s->label[record],
+                             "%s and %s do not have the same channels (%zu from %s on, %zu from %s "
+                             "on): only logs with the same columns can be compared",
+                             s->label[0], s->label[record], first->count,
+                             imk_even_record_column(first, 0)->name, other->count,
+                             imk_even_record_column(other, 0)->name);
 }
 
 static int identify_each(several_logs *s, const imk_executor *executor, imk_result *result)

@@ -63,5 +63,5 @@ int identify_run(const identify_options *o, const char *path, const imk_executor
         return log_input_tell(path, findings, status, &error);
     char text[400];
     imk_finding_text(failure, text, sizeof text);
-    return command_failed("%s %s", path, text);
+    return command_failed_by(imk_finding_code(failure), &error, path, "%s %s", path, text);
 }

@@ -59,13 +59,17 @@ static bool has_counts(const imk_even_record *record)
 static int refuse_model(const identification *i)
 {
     if (i->shown.log && has_counts(&i->shown.log->record))
-        return command_failed("the readings of %s are counts, and a model needs rates and forces: "
-                              "state what a count is with --gyro-scale and --accel-scale, or the "
-                              "part with --device PART, --gyro-range and --accel-range",
-                              i->shown.name);
-    return command_failed("%s has no gyro or accelerometer column, so there is no model to write; "
-                          "name them with --columns, such as gyro_x",
-                          i->shown.name);
+        return command_failed_by(
+            "counts", NULL, i->shown.name,
+            "the readings of %s are counts, and a model needs rates and forces: "
+            "state what a count is with --gyro-scale and --accel-scale, or the "
+            "part with --device PART, --gyro-range and --accel-range",
+            i->shown.name);
+    return command_failed_by(
+        "no_sensor_column", NULL, i->shown.name,
+        "%s has no gyro or accelerometer column, so there is no model to write; "
+        "name them with --columns, such as gyro_x",
+        i->shown.name);
 }
 
 static int write_model(identification *i, const imk_model *noise)

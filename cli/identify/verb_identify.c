@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit identify: log at rest -> stochastic model with confidence intervals and a verdict. */
 #include "identify_parts.h"
+#include "shell/voice.h"
 
 #include "imukit/grade_position.h"
 
@@ -99,6 +100,8 @@ int identify_end(const identification *i, imk_result *result, bool warns)
 {
     const identify_options *o = i->options;
     const bool model = i->model.gyro.present || i->model.accel.present;
+    if (model)
+        voice_model(&i->model);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (o->report)
         imk_result_line(result, "Report: %s", o->report);

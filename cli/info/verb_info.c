@@ -118,31 +118,25 @@ static int list(const info_options *o, const char *path, const imk_log_settings 
     return code;
 }
 
-/* A log of which units, times or names are missing is shown in its own numbers. */
-static imk_status open_log(const char *path, imk_log_settings settings, imk_log_reader **reader,
-                           bool *lacking, imk_error *error)
+/* A stream cannot be opened twice. */
+static imk_status open_log(const char *path, const imk_log_settings *settings,
+                           imk_log_reader **reader, imk_error *lacking, imk_error *error)
 {
-    const imk_status status = imk_log_open(path, &settings, reader, error);
-    *lacking = false;
-    if ((status != IMK_ERROR_UNIT_MISSING && status != IMK_ERROR_RATE_MISSING &&
-         status != IMK_ERROR_COLUMN) ||
-        command_is_stream(path))
-        return status;
-    settings.as_written = true;
-    *lacking = imk_log_open(path, &settings, reader, NULL) == IMK_OK;
-    return *lacking ? IMK_OK : status;
+    *lacking = (imk_error){.status = IMK_OK};
+    return command_is_stream(path)
+               ? imk_log_open(path, settings, reader, error)
+               : imk_log_open_first_look(path, settings, reader, lacking, error);
 }
 
 static int inspect(const info_options *o, const char *path)
 {
     imk_log_reader *reader;
-    imk_error error;
+    imk_error error, lacking;
     const imk_log_settings settings = log_input_settings(&o->log);
     imk_log_stream *stream = command_memory(NULL, STREAMS_MAX * sizeof *stream);
     imk_info_file file = {.stream = stream};
-    bool lacking;
     int code;
-    const imk_status status = open_log(path, settings, &reader, &lacking, &error);
+    const imk_status status = open_log(path, &settings, &reader, &lacking, &error);
     if (status == IMK_OK) {
         file.format = imk_log_format_read(reader)->title;
         file.stream_count = imk_log_stream_list(reader, STREAMS_MAX, stream);
@@ -150,8 +144,8 @@ static int inspect(const info_options *o, const char *path)
         file.chosen = imk_log_stream_get(reader);
         code = look(o, reader, &file, path);
         imk_log_close(reader);
-        if (lacking && code == EXIT_DONE)
-            code = command_log_error(&error, path);
+        if (lacking.status != IMK_OK && code == EXIT_DONE)
+            code = command_log_error(&lacking, path);
     } else if (status == IMK_ERROR_NAME_UNKNOWN || status == IMK_ERROR_EMPTY) {
         code = list(o, path, &settings, &error, &file, stream);
     } else {

@@ -246,8 +246,8 @@ static int refuse(const imk_error *error)
                                        name);
         }
     if (error->status == IMK_ERROR_KEY_MISSING && error->found[0])
-        return command_failed("%s: %s has none; expected %s", error->field, error->found,
-                              error->expected);
+        return command_failed_by(NULL, error, NULL, "%s: %s has none; expected %s", error->field,
+                                 error->found, error->expected);
     return command_error(error, NULL);
 }
 

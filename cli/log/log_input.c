@@ -111,7 +111,7 @@ void log_input_note(const char *path, const imk_findings *findings)
     for (size_t i = 0; i < findings->count; i++)
         if (findings->item[i].level == IMK_FINDING_NOTE) {
             char *text = message_of(&findings->item[i], path, "the model");
-            command_note("%s", text);
+            command_note(imk_finding_code(&findings->item[i]), "%s", text);
             free(text);
         }
 }
@@ -133,7 +133,7 @@ int log_input_tell_model(const char *path, const char *model, const imk_findings
     if (!failure)
         return command_log_error(error, path);
     char *text = message_of(failure, path, model);
-    const int code = command_failed("%s", text);
+    const int code = command_failed_by(imk_finding_code(failure), error, path, "%s", text);
     free(text);
     return code;
 }

@@ -103,7 +103,8 @@ static int merge(const merge_options *o, size_t count, const char *const *paths,
     warn_complaints(&report);
     describe_missing(&report, &missing);
     if (status == IMK_ERROR_CONFLICT && report.missing[0])
-        code = command_failed("%s (--partial merges the existing runs)", missing.text);
+        code = command_failed_by("runs_missing", &error, NULL,
+                                 "%s (--partial merges the existing runs)", missing.text);
     else if (status != IMK_OK)
         code = command_error(&error, NULL);
     else if (report.missing[0])

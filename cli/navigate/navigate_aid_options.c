@@ -5,7 +5,6 @@
 #include "shell/aid_option.h"
 
 #include <math.h>
-#include <string.h>
 
 static int check_aids(const navigate_options *o)
 {
@@ -49,17 +48,11 @@ int navigate_parse_aids(const navigate_options *o, imk_navigate_log_settings *s)
     if (code < 0 && o->speed_lever_arm)
         code = aid_option_arm("speed-lever-arm", o->speed_lever_arm, s->speed_lever_arm, NULL);
     for (size_t k = 0; k < s->aid_count && code < 0; k++) {
-        imk_aid *aid = &s->aid[k];
+        const imk_aid *aid = &s->aid[k];
         if (aid->interval != 1.0 || aid->from != 1.0 || aid->until < (double)INFINITY)
             return command_misused("--aid-sigma \"%s\": the times are those of the table; "
                                    "--aid-interval and --aid-until choose among them",
                                    o->aid_sigma);
-        const bool odometer = aid->kind == IMK_AID_ODOMETER;
-        if (aid->kind == IMK_AID_HEADING)
-            continue;
-        memcpy(aid->lever_arm, odometer ? s->speed_lever_arm : s->lever_arm, sizeof aid->lever_arm);
-        if (!odometer)
-            memcpy(aid->lever_arm_sigma, s->lever_arm_sigma, sizeof aid->lever_arm_sigma);
     }
     s->aid_delay = isnan(o->aid_delay) ? 0.0 : o->aid_delay;
     s->aid_interval = isnan(o->aid_interval) ? 0.0 : o->aid_interval;

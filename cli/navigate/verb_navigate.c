@@ -115,7 +115,7 @@ static int show(const imk_navigate_log *n, const navigate_options *o, const char
     imk_result_for(result, IMK_FOR_PAGE);
     show_origin(result);
     return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
-                    o->strict && command_warning_count() > 0 ? EXIT_FAILED : EXIT_DONE);
+                    o->strict && told_warnings() > 0 ? EXIT_FAILED : EXIT_DONE);
 }
 
 /* Failures that are not of the log alone. */
@@ -141,10 +141,12 @@ static int tell(const imk_navigate_log *n, const navigate_options *o, const char
                                path);
     for (size_t i = 0; i < sizeof messages / sizeof messages[0]; i++)
         if (strcmp(failure->code, messages[i].code) == 0)
-            return messages[i].named ? command_failed("%s %s", path, text)
-                                     : command_failed("%s", text);
+            return command_failed_by(imk_finding_code(failure), error, path, "%s%s%s",
+                                     messages[i].named ? path : "", messages[i].named ? " " : "",
+                                     text);
     const bool of_model = strcmp(failure->code, "model_axes") == 0;
-    return command_failed("%s: %s", of_model ? o->model : of_aid ? o->aid : path, text);
+    const char *file = of_model ? o->model : of_aid ? o->aid : path;
+    return command_failed_by(imk_finding_code(failure), error, file, "%s: %s", file, text);
 }
 
 /* The table of --aid. @return -1 or the exit code */

@@ -5,13 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-/* The limit of the steps of a motion script: at higher temperatures nothing is solid. */
-static const double largest_motion = 1e6; /* [rad/s], [m/s^2] */
-static const double highest_temperature = 1e4;
-
 /* One number is along x, three are x y z. */
-static int read_vector(const char *name, const char *text, const char *unit, const char *most,
-                       double *values)
+static int read_vector(const char *name, const char *text, const char *unit, double *values)
 {
     imk_error error;
     double read[3], sigmas[3];
@@ -31,49 +26,52 @@ static int read_vector(const char *name, const char *text, const char *unit, con
                                : error.found[0] ? error.found
                                                 : imk_status_text(status),
                                imk_dimension_examples(due));
-    for (size_t k = 0; k < count; k++) {
-        if (!(fabs(read[k]) <= largest_motion))
-            return command_misused("--%s %s: expected at most %s", name, text, most);
-        values[k] = read[k];
-    }
+    memcpy(values, read, count * sizeof *values);
     return -1;
 }
 
-static int check(const physics_options *o)
+static int check_sine(const physics_options *o)
 {
-    const bool is_sine = !isnan(o->sine), moves = o->rate || o->acceleration;
-    if (is_sine && !moves)
+    if (isnan(o->sine))
+        return -1;
+    if (!o->rate && !o->acceleration)
         return command_misused("--sine is the frequency of the rate or acceleration given: add "
                                "--rate or --acceleration");
-    if (is_sine && !(o->sine > 0))
-        return command_misused("--sine: expected a frequency above 0");
-    if (is_sine && !(o->sine <= 0.25 * o->output_rate))
+    return o->sine > 0 ? -1 : command_misused("--sine: expected a frequency above 0");
+}
+
+/* The library's refusal with the names of the options. */
+static int check(const physics_options *o, const imk_physics_log_settings *settings)
+{
+    imk_error error;
+    if (imk_physics_input_check(settings, &error) == IMK_OK)
+        return -1;
+    if (strcmp(error.field, "angular_rate") == 0)
+        return command_misused("--rate %s: expected %s", o->rate, error.expected);
+    if (strcmp(error.field, "specific_force") == 0)
+        return command_misused("--acceleration %s: expected %s", o->acceleration, error.expected);
+    if (strcmp(error.field, "frequency") == 0)
         return command_misused("--sine %g Hz: the input is held over a sample of %g s, and a cycle "
                                "needs at least four samples; add --output-rate %gHz or more",
                                o->sine, 1 / o->output_rate, 4 * o->sine);
-    if (!(o->temperature > 0 && o->temperature <= highest_temperature))
-        return command_misused("--temperature: expected more than absolute zero, and at most "
-                               "10000 K");
-    const double end = isnan(o->duration) ? 0 : o->temperature + o->temperature_rate * o->duration;
-    if (!(fabs(o->temperature_rate) <= highest_temperature && end <= highest_temperature))
-        return command_misused("--temperature-rate: expected at most 10000 K/s, and to end at no "
-                               "more than 10000 K");
-    return -1;
+    return command_misused("--temperature%s: expected %s",
+                           strcmp(error.field, "temperature_rate") == 0 ? "-rate" : "",
+                           error.expected);
 }
 
-int physics_input_make(const physics_options *o, imk_physics_input *input)
+int physics_input_make(const physics_options *o, imk_physics_log_settings *settings)
 {
+    imk_physics_input *input = &settings->input;
     *input = (imk_physics_input){.exposure = imk_exposure_default(),
                                  .frequency = isnan(o->sine) ? 0 : o->sine,
                                  .temperature_rate = o->temperature_rate};
     input->exposure.temperature = o->temperature;
     input->exposure.temperature_rate = o->temperature_rate;
-    int code = check(o);
+    int code = check_sine(o);
     if (code < 0 && o->rate)
-        code = read_vector("rate", o->rate, "deg/s", "1e6 rad/s, which is 5.7e7 deg/s",
-                           input->exposure.angular_rate);
+        code = read_vector("rate", o->rate, "deg/s", input->exposure.angular_rate);
     if (code < 0 && o->acceleration)
-        code = read_vector("acceleration", o->acceleration, "m/s^2", "1e6 m/s^2, which is 102000 g",
-                           input->exposure.specific_force);
-    return code;
+        code =
+            read_vector("acceleration", o->acceleration, "m/s^2", input->exposure.specific_force);
+    return code < 0 ? check(o, settings) : code;
 }

@@ -31,7 +31,7 @@ typedef struct physics {
 /* All return -1 or the exit code, the message printed. */
 
 /* physics_input.c: what the options say. */
-int physics_input_make(const physics_options *o, imk_physics_input *input);
+int physics_input_make(const physics_options *o, imk_physics_log_settings *settings);
 
 /* physics_run.c */
 

@@ -24,15 +24,11 @@ static void suggest_level(const physics *p, imk_error *error)
 int physics_refused(const physics *p, imk_error *error)
 {
     const bool is_file = strcmp(p->source, p->settings.instrument->name) != 0;
-    const bool is_step = strcmp(error->field, "step") == 0;
-    const bool is_rate = strcmp(error->field, "rate") == 0;
     imk_design_error_in_units(p->settings.instrument, p->settings.design, error);
-    if ((is_step || is_rate) && !error->found[0] && error->status == IMK_ERROR_RANGE) {
-        snprintf(error->found, sizeof error->found,
-                 is_step ? "\"%.6g s\" is outside its valid range (limit %.6g s)"
-                         : "\"%.6g Hz\" is outside its valid range (limit %.6g Hz)",
-                 error->value, error->limit);
-        snprintf(error->field, sizeof error->field, is_step ? "--step" : "--output-rate");
+    if (strcmp(error->field, "step") == 0) {
+        snprintf(error->field, sizeof error->field, "--step");
+    } else if (strcmp(error->field, "rate") == 0) {
+        snprintf(error->field, sizeof error->field, "--output-rate");
     } else if (strcmp(error->field, "duration") == 0) {
         /* a view has a duration of its own */
         const bool is_run = !isnan(p->options->duration);
@@ -82,8 +78,9 @@ static int tell(const physics *p, const imk_physics_log *run, imk_status status,
         return -1;
     if (!failure)
         return physics_refused(p, error);
-    return strcmp(failure->code, "not_written") == 0 ? command_error(error, NULL)
-                                                     : command_failed("%s", text);
+    return strcmp(failure->code, "not_written") == 0
+               ? command_error(error, NULL)
+               : command_failed_by(imk_finding_code(failure), error, NULL, "%s", text);
 }
 
 int physics_run_make(const physics *p, imk_physics_log **run)

@@ -212,7 +212,7 @@ static int show(const physics *p, const imk_physics_log *r, const imk_physics_sw
     }
     const int failed = o->plot ? show_plot(result, o->plot) : -1;
     const show_options options = {
-        .report = o->report, .json = o->json && failed < 0, .quiet = quiet || failed >= 0};
+        .report = o->report, .json = o->json, .quiet = quiet || failed >= 0};
     return show_end(result, &options, failed < 0 ? EXIT_DONE : failed);
 }
 
@@ -258,10 +258,13 @@ static int do_task(const physics *p)
 {
     const physics_options *o = p->options;
     imk_error error;
+    if (o->show && o->json && !o->output)
+        return command_misused("--show and --json cannot both go to standard output: add -o "
+                               "DESIGN.yaml, or leave --show out");
+    if (o->show && imk_design_write(o->output ? o->output : "-", &p->file, &error) != IMK_OK)
+        return command_error(&error, NULL);
     if (o->show)
-        return imk_design_write(o->output ? o->output : "-", &p->file, &error) == IMK_OK
-                   ? EXIT_DONE
-                   : command_error(&error, NULL);
+        return o->json ? show(p, NULL, NULL, true) : EXIT_DONE;
     if (o->reduce || o->sweep)
         return do_model(p);
     if (!isnan(o->duration))
@@ -324,7 +327,7 @@ static int start(const physics_options *o, const char *operand)
     p.settings.instrument = p.file.instrument;
     p.settings.design = p.file.design;
     if (code < 0)
-        code = physics_input_make(o, &p.settings.input);
+        code = physics_input_make(o, &p.settings);
     if (code < 0) {
         p.model = command_memory(NULL, sizeof *p.model);
         imk_instrument_reduce(p.file.instrument, p.file.design, p.model);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Messages of the command: everything a person reads on standard error comes through here. */
+/* Messages of the command: everything a person reads beside results comes through here. */
 #define _POSIX_C_SOURCE 200809L
 #include "command.h"
+#include "told.h"
+#include "voice.h"
 
 #include "imukit/names.h"
 #include "imukit/output_file.h"
@@ -16,9 +18,7 @@
 
 static const char *current_verb;
 
-enum { WARNINGS_MAX = 64, MESSAGE_SIZE = 1 << 14 };
-static command_warning warnings[WARNINGS_MAX];
-static size_t warning_count;
+enum { MESSAGE_SIZE = 1 << 14 };
 
 static int kept_count;
 static char **kept_arguments;
@@ -71,9 +71,18 @@ const char *command_line_as(const char *name, const char *const *without, size_t
     return line;
 }
 
+static bool has_said_why; /* a message was an error's */
+
 void command_begin(const char *verb_name)
 {
     current_verb = verb_name;
+    has_said_why = false;
+    told_begin();
+}
+
+const char *command_verb(void)
+{
+    return current_verb;
 }
 
 const char *command_color(FILE *stream, const char *sequence)
@@ -100,30 +109,37 @@ void command_clean(char *text)
     *end = '\0';
 }
 
-static void speak(const char *color, const char *label, const char *format, va_list arguments)
-    __attribute__((format(printf, 3, 0)));
+static void fail(const char *code, const imk_error *error, const char *file, const char *format,
+                 va_list arguments) __attribute__((format(printf, 4, 0)));
 
-static void speak(const char *color, const char *label, const char *format, va_list arguments)
+static void fail(const char *code, const imk_error *error, const char *file, const char *format,
+                 va_list arguments)
 {
     char text[MESSAGE_SIZE];
     vsnprintf(text, sizeof text, format, arguments);
     command_clean(text);
-    fflush(stdout);
-    fprintf(stderr, "imukit%s%s: ", current_verb ? " " : "", current_verb ? current_verb : "");
-    if (*label)
-        fprintf(stderr, "%s%s%s ", command_color(stderr, color), label,
-                command_color(stderr, COLOR_RESET));
-    fprintf(stderr, "%s\n", text);
+    has_said_why = true;
+    char word[48];
+    told_code(code, error, sizeof word, word);
+    voice_say(VOICE_FAILURE, current_verb, word, text);
+    told_error(code, error, file, text);
 }
-
-static bool has_said_why; /* a message was an error's */
 
 int command_failed(const char *format, ...)
 {
     va_list arguments;
-    has_said_why = true;
     va_start(arguments, format);
-    speak(COLOR_RED, "error:", format, arguments);
+    fail("failed", NULL, NULL, format, arguments);
+    va_end(arguments);
+    return EXIT_FAILED;
+}
+
+int command_failed_by(const char *code, const imk_error *error, const char *file,
+                      const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fail(code, error, file, format, arguments);
     va_end(arguments);
     return EXIT_FAILED;
 }
@@ -131,14 +147,11 @@ int command_failed(const char *format, ...)
 int command_misused(const char *format, ...)
 {
     va_list arguments;
-    has_said_why = true;
     va_start(arguments, format);
-    speak(COLOR_RED, "error:", format, arguments);
+    fail("usage", NULL, NULL, format, arguments);
     va_end(arguments);
-    if (current_verb)
-        fprintf(stderr, "Try: imukit %s --help\n", current_verb);
-    else
-        fputs("Try: imukit --help\n", stderr);
+    voice_advise("Try: imukit%s%s --help", current_verb ? " " : "",
+                 current_verb ? current_verb : "");
     return EXIT_USAGE;
 }
 
@@ -146,19 +159,20 @@ int command_error(const imk_error *error, const char *source)
 {
     char text[900];
     imk_error_text(error, source, text, sizeof text);
-    return command_failed("%s", text);
+    return command_failed_by(NULL, error, source, "%s", text);
 }
 
 void command_end(int code)
 {
     imk_output_file_abandon_all();
-    exit(code);
+    told_end(code);
+    voice_end(code);
 }
 
 imk_status command_unless_memory(imk_status status)
 {
     if (status == IMK_ERROR_MEMORY)
-        command_end(command_failed("memory is exhausted"));
+        command_end(command_failed_by("memory", NULL, NULL, "memory is exhausted"));
     return status;
 }
 
@@ -229,7 +243,10 @@ int command_log_error(const imk_error *error, const char *path)
     const char *reason = strstr(options, " (");
     snprintf(added, sizeof added, "%.*s", (int)(reason ? reason - options : (long)strlen(options)),
              options);
-    fprintf(stderr, "Next: %s %s\n", command_line_but(added, sizeof line, line), added);
+    char next[sizeof line + sizeof added];
+    snprintf(next, sizeof next, "%s %s", command_line_but(added, sizeof line, line), added);
+    voice_advise("Next: %s", next);
+    told_next(next);
     return code;
 }
 
@@ -249,13 +266,16 @@ int command_model(const char *name, imk_model *model, imk_document **document)
     if (status == IMK_OK)
         return -1;
     if (status == IMK_ERROR_KEY_UNKNOWN && strcmp(error.found, "instrument") == 0)
-        return command_failed("%s is the design of an instrument, not a model; its error model:\n"
-                              "  imukit physics %s --reduce -o MODEL.yaml",
-                              name, name);
+        return command_failed_by(
+            "design_not_model", &error, name,
+            "%s is the design of an instrument, not a model; its error model:\n"
+            "  imukit physics %s --reduce -o MODEL.yaml",
+            name, name);
     if (status == IMK_ERROR_NAME_UNKNOWN && imk_instrument_find(name))
-        return command_failed("%s is an instrument, not a model; the error model of its default "
-                              "design:\n  imukit physics %s --reduce -o MODEL.yaml",
-                              name, name);
+        return command_failed_by("design_not_model", &error, name,
+                                 "%s is an instrument, not a model; the error model of its default "
+                                 "design:\n  imukit physics %s --reduce -o MODEL.yaml",
+                                 name, name);
     return command_error(&error, status == IMK_ERROR_NAME_UNKNOWN ? NULL : name);
 }
 
@@ -276,52 +296,38 @@ bool command_is_stream(const char *path)
            (stat(path, &about) == 0 && !S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode));
 }
 
-void command_note(const char *format, ...)
+static void tell(imk_finding_level level, const char *code, const char *format, va_list arguments)
+    __attribute__((format(printf, 3, 0)));
+
+static void tell(imk_finding_level level, const char *code, const char *format, va_list arguments)
+{
+    char text[MESSAGE_SIZE];
+    vsnprintf(text, sizeof text, format, arguments);
+    command_clean(text);
+    if (!told_finding(level, code, text))
+        return;
+    voice_say(level == IMK_FINDING_WARNING ? VOICE_WARNING : VOICE_NOTE, current_verb, code, text);
+}
+
+void command_note(const char *code, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    speak("", "", format, arguments);
+    tell(IMK_FINDING_NOTE, code, format, arguments);
     va_end(arguments);
-}
-
-static bool was_given(const command_warning *warning)
-{
-    for (size_t i = 0; i < warning_count; i++)
-        if (strcmp(warnings[i].code, warning->code) == 0 &&
-            strcmp(warnings[i].message, warning->message) == 0)
-            return true;
-    return false;
 }
 
 void command_warn(const char *code, const char *format, ...)
 {
     va_list arguments;
-    command_warning warning;
-    snprintf(warning.code, sizeof warning.code, "%s", code);
     va_start(arguments, format);
-    vsnprintf(warning.message, sizeof warning.message, format, arguments);
+    tell(IMK_FINDING_WARNING, code, format, arguments);
     va_end(arguments);
-    if (was_given(&warning))
-        return;
-    if (warning_count < WARNINGS_MAX)
-        warnings[warning_count++] = warning;
-    va_start(arguments, format);
-    speak(COLOR_YELLOW, "warning:", format, arguments);
-    va_end(arguments);
-}
-
-size_t command_warning_count(void)
-{
-    return warning_count;
-}
-
-const command_warning *command_warning_get(size_t index)
-{
-    return index < warning_count ? &warnings[index] : NULL;
 }
 
 int command_finish(int code)
 {
+    told_end(code);
     const int number = fflush(stdout) != 0 ? errno : 0;
     if (number == 0 && !ferror(stdout))
         return code;

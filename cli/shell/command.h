@@ -4,6 +4,7 @@
 #define IMUKIT_COMMAND_H
 
 #include "options.h"
+#include "told.h"
 
 #include "imukit/decimal.h"
 #include "imukit/executor.h"
@@ -38,6 +39,8 @@ COMMAND_VERBS(VERB)
 
 /* Remember which verb speaks; messages start with it. */
 void command_begin(const char *verb_name);
+/* NULL: none yet. */
+const char *command_verb(void);
 
 /* The command line as it can be typed again; kept by command_line_keep(). */
 void command_line_keep(int argument_count, char **arguments);
@@ -47,6 +50,10 @@ const char *command_line_as(const char *name, const char *const *without, size_t
 
 /* "imukit allan: <message>" on standard error. Return the exit code, for `return failed(…)`. */
 int command_failed(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* The same where a program is to know why: the code of a finding, the error of the library and the
+ * file it is about. Each may be NULL; without a code it is that of the error. */
+int command_failed_by(const char *code, const imk_error *error, const char *file,
+                      const char *format, ...) __attribute__((format(printf, 4, 5)));
 int command_misused(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* The message of a library error; source is the file it is about, or NULL. */
 int command_error(const imk_error *error, const char *source);
@@ -79,17 +86,10 @@ void command_clean(char *text);
  */
 bool command_is_stream(const char *path);
 
-/* "imukit drift: <message>" on standard error, without a label: what a person may want to know. */
-void command_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
-
-/* A warning goes to standard error and into the JSON, once. */
-typedef struct command_warning {
-    char code[40];
-    char message[400];
-} command_warning;
+/* "imukit drift: <message>" on standard error and into the JSON, each once: a note, which has no
+ * label and tells what a person may want to know, or a warning. */
+void command_note(const char *code, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void command_warn(const char *code, const char *format, ...) __attribute__((format(printf, 2, 3)));
-size_t command_warning_count(void);
-const command_warning *command_warning_get(size_t index);
 
 /* Bold and colours of standard output or standard error ("" when it is no terminal or NO_COLOR is
  * set). */

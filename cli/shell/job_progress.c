@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* One line for each stage of a job. */
 #include "job_progress.h"
+#include "voice.h"
 
 #include "imukit/memory_limit.h"
 
@@ -20,7 +21,7 @@ static bool show(void *context, const char *stage, const char *unit, uint64_t do
         p->shown = progress_begin(p->label, p->unit, 1);
     }
     progress_update(&p->shown, done, total);
-    return true;
+    return !voice_interrupted();
 }
 
 job_progress job_progress_begin(const char *path)

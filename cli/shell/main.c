@@ -126,6 +126,14 @@ static void catch_signals(void)
             sigaction(ending_signals[i], &action, NULL);
 }
 
+/* Errors of other options, too, are to be JSON if it is wanted. */
+static void find_json(int count, char **words)
+{
+    for (int i = 0; i < count && strcmp(words[i], "--") != 0; i++)
+        if (strcmp(words[i], "--json") == 0)
+            told_wants_json();
+}
+
 /* The command after its name. */
 static int obey(int argc, char **argv)
 {
@@ -142,8 +150,9 @@ static int obey(int argc, char **argv)
     if (argv[1][0] == '-')
         return command_misused("an option must follow a verb: imukit VERB %s", argv[1]);
     const verb *v = find_verb(argv[1]);
+    find_json(argc - 2, argv + 2);
     if (!v)
-        return unknown_verb(argv[1]);
+        return command_finish(unknown_verb(argv[1]));
     command_begin(v->name);
     command_line_keep(argc, argv);
     return command_finish(v->run(argc - 2, argv + 2));

@@ -318,10 +318,11 @@ static int take_stdout(const verb *v, const void *settings, const char *name)
                  : -1;
 }
 
-/* At most one output goes to standard output. */
+/* At most one output goes to standard output, where a figure on the terminal goes, too. */
 static int check_stdout(const verb *v, const void *settings)
 {
     int code = -1;
+    bool json = false, drawn = false;
     for (size_t g = 0; g < GROUPS_MAX; g++)
         for (size_t i = 0; i < v->groups[g].count && code < 0; i++) {
             const option *o = &v->groups[g].options[i];
@@ -329,8 +330,13 @@ static int check_stdout(const verb *v, const void *settings)
             const char *path = o->kind == OPTION_OUTPUT ? *(const char *const *)at : NULL;
             if (path && strcmp(path, "-") == 0)
                 code = take_stdout(v, settings, o->name);
+            json = json || (strcmp(o->name, "json") == 0 && *(const bool *)at);
+            drawn = drawn || (path && strcmp(o->name, "plot") == 0 && strcmp(path, "term") == 0);
         }
-    return code;
+    return code < 0 && json && drawn
+               ? command_misused("--json and --plot term cannot both go to standard output: give a "
+                                 "file name")
+               : code;
 }
 
 static int check_operands(const verb *v, size_t count)
@@ -347,6 +353,7 @@ int options_parse(const verb *v, int argument_count, char **arguments, void *set
 {
     size_t operand_count = 0;
     bool options_over = false;
+    stdout_taken_by = NULL;
     for (size_t i = 0; i < v->operands_maximum; i++)
         operands[i] = NULL;
     for (int i = 0; i < argument_count; i++) {

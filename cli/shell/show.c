@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Results become JSON, text, a page and a drawing. */
 #include "show.h"
+#include "voice.h"
 
 #include "imukit/figure_file.h"
 #include "imukit/model_file.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,8 +26,9 @@ void show_origin(imk_result *result)
 
 void show_warnings(imk_result *result)
 {
-    for (size_t i = 0; i < command_warning_count(); i++)
-        imk_result_finding(result, 2, command_warning_get(i)->message);
+    for (size_t i = 0; i < told_count(); i++)
+        if (told_get(i)->level == IMK_FINDING_WARNING)
+            imk_result_finding(result, 2, told_get(i)->message);
 }
 
 void show_model(imk_result *result, const char *title, const imk_model *model)
@@ -43,19 +44,6 @@ void show_model(imk_result *result, const char *title, const imk_model *model)
         imk_result_line(result, "%s", reason);
     }
     free(text);
-}
-
-static void add_warnings(imk_result *result)
-{
-    imk_result_array(result, "warnings");
-    for (size_t i = 0; i < command_warning_count(); i++) {
-        const command_warning *warning = command_warning_get(i);
-        imk_result_object(result, NULL);
-        imk_result_text(result, "code", warning->code);
-        imk_result_text(result, "message", warning->message);
-        imk_result_end(result);
-    }
-    imk_result_end(result);
 }
 
 /* @return -1 or the exit code */
@@ -87,8 +75,10 @@ static void print(const imk_result *result, bool json, FILE *out)
         status = imk_result_to_text(result, command_color(out, COLOR_BOLD),
                                     command_color(out, COLOR_RESET), &text, &size);
     (void)command_unless_memory(status);
-    if (fwrite(text, 1, size, out) != size && out == stdout)
-        (void)command_failed("standard output: %s", strerror(errno));
+    if (out == stdout)
+        voice_result(text, size);
+    else
+        voice_aside(text, size);
     free(text);
 }
 
@@ -124,19 +114,20 @@ static int draw_nothing(const char *lacking)
     return command_error(&error, NULL);
 }
 
+/* JSON comes last, since it tells what failed, too. */
 int show_end(imk_result *result, const show_options *options, int code)
 {
     int failed = options->report ? write_page(result, options->report) : -1;
-    if (failed < 0 && options->json) {
-        add_warnings(result);
-        print(result, true, stdout);
-    } else if (failed < 0 && !options->quiet && !options_stdout_taken()) {
+    if (failed < 0 && !options->json && !options->quiet && !options_stdout_taken())
         print(result, false, stdout);
-    }
     if (failed < 0 && options->plot && options->lacking)
         failed = draw_nothing(options->lacking);
     else if (failed < 0 && options->plot)
         failed = draw(result, options->plot);
+    if (options->json) {
+        told_show(result);
+        print(result, true, stdout);
+    }
     imk_result_free(result);
     return failed < 0 ? code : failed;
 }

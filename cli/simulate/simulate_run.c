@@ -4,6 +4,7 @@
 #include "shell/job_progress.h"
 #include "simulate_parts.h"
 
+#include "imukit/show.h"
 #include "imukit/thread_pool.h"
 
 #include <errno.h>
@@ -48,6 +49,16 @@ static int choose_units(const simulate_options *o, const imk_model *model,
     return code < 0 ? check_counts(o, model) : code;
 }
 
+/* End a log, or the truth or the aids beside it, and keep what it is. @return the exit code */
+static int end_log(const scene *s, const char *key, imk_log_sink *log, imk_status status,
+                   imk_error *error)
+{
+    if (imk_log_sink_end(log, status, error) != IMK_OK)
+        return command_error(error, NULL);
+    imk_show_written(key, log->path, log->rows, log->column_count, log->column, s->result);
+    return EXIT_DONE;
+}
+
 /* One run of the scene into one file; the progress says `label`, "run 3 (4 of 20)".
  * @return the exit code, the message printed */
 static int simulate_log(const simulate_options *o, const imk_model *model, const scene *s,
@@ -59,13 +70,12 @@ static int simulate_log(const simulate_options *o, const imk_model *model, const
     const imk_record_sink sink = imk_log_sink_of(&log);
     job_progress shown = job_progress_begin(NULL);
     const imk_job job = job_progress_job(&shown, executor);
-    imk_status status = imk_simulate_log_run(model, &s->settings, &sink, label, &job, &error);
+    const imk_status status = imk_simulate_log_run(model, &s->settings, &sink, label, &job, &error);
     job_progress_end(&shown);
-    status = imk_log_sink_end(&log, status, &error);
-    return status == IMK_OK ? EXIT_DONE : command_error(&error, NULL);
+    return end_log(s, NULL, &log, status, &error);
 }
 
-/* What perfect sensors would have read, and where the unit was. @return -1 or the exit code */
+/* What perfect sensors would have read, and where the unit was. @return the exit code */
 static int simulate_truth(const simulate_options *o, const imk_model *model, const scene *s,
                           const imk_executor *executor)
 {
@@ -74,13 +84,12 @@ static int simulate_truth(const simulate_options *o, const imk_model *model, con
     const imk_record_sink sink = imk_log_sink_of(&log);
     job_progress shown = job_progress_begin(NULL);
     const imk_job job = job_progress_job(&shown, executor);
-    imk_status status = imk_simulate_truth_run(model, &s->settings, &sink, &job, &error);
+    const imk_status status = imk_simulate_truth_run(model, &s->settings, &sink, &job, &error);
     job_progress_end(&shown);
-    status = imk_log_sink_end(&log, status, &error);
-    return status == IMK_OK ? -1 : command_error(&error, NULL);
+    return end_log(s, "truth", &log, status, &error);
 }
 
-/* What other instruments read. @return -1 or the exit code */
+/* What other instruments read. @return the exit code */
 static int simulate_aids(const simulate_options *o, const imk_model *model, const scene *s)
 {
     imk_aid aid[IMK_AIDS_MAX];
@@ -105,9 +114,9 @@ static int simulate_aids(const simulate_options *o, const imk_model *model, cons
     imk_error error;
     imk_log_sink log = {.path = o->aid_output, .fixed = true};
     const imk_record_sink sink = imk_log_sink_of(&log);
-    imk_status status = imk_simulate_aids_run(model, &s->settings, count, aid, &sink, NULL, &error);
-    status = imk_log_sink_end(&log, status, &error);
-    return status == IMK_OK ? -1 : command_error(&error, NULL);
+    const imk_status status =
+        imk_simulate_aids_run(model, &s->settings, count, aid, &sink, NULL, &error);
+    return end_log(s, "aids", &log, status, &error);
 }
 
 /* One log per run, DIR/run_000.csv and so on. */
@@ -137,17 +146,29 @@ static int write_logs(const simulate_options *o, const imk_model *model, scene *
                       const imk_executor *executor)
 {
     /* A truth that cannot be written is known before the logs are made. */
-    int code = o->truth ? simulate_truth(o, model, s, executor) : -1;
-    if (code < 0 && o->aid)
+    int code = EXIT_DONE;
+    imk_result_object(s->result, "result");
+    if (o->truth)
+        code = simulate_truth(o, model, s, executor);
+    else
+        imk_result_null(s->result, "truth");
+    if (code == EXIT_DONE && o->aid)
         code = simulate_aids(o, model, s);
-    if (code >= 0)
+    else
+        imk_result_null(s->result, "aids");
+    if (code != EXIT_DONE)
         return code;
+    imk_result_array(s->result, "logs");
     if (o->runs.given)
-        return simulate_runs(o, model, s, executor);
-    return simulate_log(o, model, s, executor, o->output ? o->output : "-", "simulating");
+        code = simulate_runs(o, model, s, executor);
+    else
+        code = simulate_log(o, model, s, executor, o->output ? o->output : "-", "simulating");
+    imk_result_end(s->result);
+    imk_result_end(s->result);
+    return code;
 }
 
-int simulate_logs(const simulate_options *o, const imk_model *model, scene *s)
+int simulate_logs(const simulate_options *o, const imk_model *model, const char *name, scene *s)
 {
     int code = choose_units(o, model, &s->settings);
     const bool made = code < 0 && o->runs.given && mkdir(o->output, 0777) == 0;
@@ -156,10 +177,17 @@ int simulate_logs(const simulate_options *o, const imk_model *model, scene *s)
     if (code < 0) {
         imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
         imk_executor executor = imk_thread_pool_executor(pool);
+        s->result = show_begin("simulate");
+        imk_show_simulate_inputs(&s->settings, name, o->motion, o->temperature,
+                                 o->runs.given ? o->runs.value : 1, s->result);
         code = write_logs(o, model, s, &executor);
         imk_thread_pool_destroy(pool);
     }
     if (made && code != EXIT_DONE)
         (void)rmdir(o->output); /* it stays when a log is in it */
-    return code;
+    if (code != EXIT_DONE)
+        return code;
+    imk_result *result = s->result;
+    s->result = NULL;
+    return show_end(result, &(show_options){.json = o->json, .quiet = true}, code);
 }

@@ -2,6 +2,8 @@
 /* Motion, temperature and length of a simulation, from the options. */
 #include "simulate_parts.h"
 
+#include "log/log_input.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -72,74 +74,38 @@ static int check_clock(const simulate_options *o, const imk_model *model, const 
     return -1;
 }
 
-static bool has_temperature_terms(const imk_triad *triad)
-{
-    if (!triad->present)
-        return false;
-    bool any = triad->bias.temperature.order > 0 || triad->scale_factor.temperature.order > 0;
-    for (int i = 0; i < triad->axis_count; i++)
-        any = any || triad->bias.temperature_rate.value[i] != 0 ||
-              triad->bias.hysteresis.value[i] != 0;
-    return any;
-}
-
-static int open_temperature(const simulate_options *o, const imk_model *model, scene *s)
+static int open_temperature(const simulate_options *o, scene *s)
 {
     imk_error error;
-    if (!o->temperature) {
-        if (has_temperature_terms(&model->gyro) || has_temperature_terms(&model->accel) ||
-            has_temperature_terms(&model->mag))
-            command_warn("temperature_unknown", "the model's temperature terms are left out: add "
-                                                "--temperature 25degC or a profile");
+    if (!o->temperature)
         return -1;
-    }
     if (imk_temperature_read(o->temperature, &s->temperature, &error) != IMK_OK)
         return table_error(&error, o->temperature);
     s->settings.simulation.temperature = imk_temperature_file_profile(s->temperature);
     return -1;
 }
 
-/* A magnetometer needs a field, and a motion with an attitude. */
+/* Without the option the job chooses it. */
 static int choose_field(const simulate_options *o, const imk_model *model, scene *s)
 {
     imk_simulation *simulation = &s->settings.simulation;
-    const imk_trajectory *trajectory = simulation->motion.trajectory;
     imk_error error;
     imk_unit unit;
     double sigma[3];
     size_t count = 0;
-    if (o->field && !model->mag.present)
+    if (!o->field || (model->mag.present && simulation->motion.recorded))
+        return -1;
+    if (!model->mag.present)
         return command_misused(
             "--field is for a model with a magnetometer (mag:), and this has none");
-    if (model->mag.present && simulation->motion.recorded) {
-        command_warn("no_attitude",
-                     "the magnetometer is left out: %s states rates and forces, but "
-                     "not the attitude in the field",
-                     o->motion);
-        return -1;
-    }
-    if (o->field) {
-        const imk_status status =
-            imk_quantity_parse(o->field, o->field + strlen(o->field), imk_unit_of("T").dimension, 3,
-                               simulation->field, sigma, &count, &unit, &error);
-        return status == IMK_OK && count == 3
-                   ? -1
-                   : command_misused(
-                         "--field \"%s\": expected three numbers and a unit, north, east "
-                         "and down, such as \"20 1 43 uT\"",
-                         o->field);
-    }
-    double latitude = simulation->latitude, last;
-    if (trajectory) {
-        imk_motion_state state;
-        double first;
-        imk_trajectory_span(trajectory, &first, &last);
-        imk_trajectory_state(trajectory, first, &state);
-        latitude = state.place.latitude;
-    }
-    if (model->mag.present)
-        imk_dipole_field(latitude, simulation->field);
-    return -1;
+    const imk_status status =
+        imk_quantity_parse(o->field, o->field + strlen(o->field), imk_unit_of("T").dimension, 3,
+                           simulation->field, sigma, &count, &unit, &error);
+    return status == IMK_OK && count == 3
+               ? -1
+               : command_misused("--field \"%s\": expected three numbers and a unit, north, east "
+                                 "and down, such as \"20 1 43 uT\"",
+                                 o->field);
 }
 
 static int choose_rate(const simulate_options *o, scene *s)
@@ -159,26 +125,16 @@ static int choose_rate(const simulate_options *o, scene *s)
     return -1;
 }
 
-/* Vibration that the parts of a sample cannot follow is neither averaged nor rectified rightly. */
-static void warn_of_vibration(const simulate_options *o, const scene *s)
+static double motion_length(const scene *s)
 {
-    const imk_trajectory *trajectory = s->settings.simulation.motion.trajectory;
-    const double rate = s->settings.simulation.rate;
-    if (!trajectory || o->substeps.given)
-        return;
-    size_t parts = imk_trajectory_substeps(trajectory, 1 / rate);
-    if (parts > IMK_SUBSTEPS_MAX)
-        command_warn("vibration",
-                     "the vibration needs %zu parts per sample, but %d are the most; its effect is "
-                     "wrong below --rate %.0fHz",
-                     parts, IMK_SUBSTEPS_MAX, ceil(rate * (double)parts / IMK_SUBSTEPS_MAX));
+    return s->motion ? imk_motion_file_duration(s->motion) : HUGE_VAL;
 }
 
-/* A motion given without a length is simulated to its end, the last row included. */
-static int choose_length(const simulate_options *o, scene *s)
+/* Lengths that the job refuses, too, in terms of the options. */
+static int check_length(const simulate_options *o, scene *s)
 {
     const double rate = s->settings.simulation.rate;
-    const double length = s->motion ? imk_motion_file_duration(s->motion) : (double)INFINITY;
+    const double length = motion_length(s);
     if (isnan(o->duration) && isinf(length))
         return command_misused("the length is missing: add --duration 1h");
     if (isnan(o->duration)) {
@@ -187,7 +143,6 @@ static int choose_length(const simulate_options *o, scene *s)
             return command_misused("the motion's %g s at %g Hz are %.3g rows: expected up to 1e15; "
                                    "add --duration, or a lower rate",
                                    length, rate, length * rate);
-        s->settings.rows = recorded ? recorded->count : (uint64_t)floor(length * rate + 1e-6) + 1;
         return -1;
     }
     if (!(o->duration > 0))
@@ -202,8 +157,18 @@ static int choose_length(const simulate_options *o, scene *s)
                                imk_motion_file_kind(s->motion) == IMK_MOTION_SCRIPT
                                    ? ", or let the motion end with `then: hold`"
                                    : "");
-    s->settings.rows = (uint64_t)llround(o->duration * rate);
     return -1;
+}
+
+/* What follows from the model and the motion. */
+static int complete(const simulate_options *o, const imk_model *model, scene *s)
+{
+    imk_findings findings = {.count = 0};
+    imk_error error;
+    const imk_status status = imk_simulate_log_complete(model, o->duration, motion_length(s),
+                                                        &s->settings, &findings, &error);
+    (void)log_input_tell(o->motion, &findings, IMK_OK, NULL);
+    return status == IMK_OK ? -1 : command_error(&error, NULL);
 }
 
 int scene_open(const simulate_options *o, const imk_model *model, scene *s)
@@ -224,19 +189,15 @@ int scene_open(const simulate_options *o, const imk_model *model, scene *s)
     if (code < 0)
         code = check_clock(o, model, s);
     if (code < 0)
-        code = open_temperature(o, model, s);
+        code = open_temperature(o, s);
     if (code < 0)
         code = choose_field(o, model, s);
     if (code < 0)
         code = choose_rate(o, s);
     if (code < 0)
-        code = choose_length(o, s);
+        code = check_length(o, s);
     if (code < 0)
-        warn_of_vibration(o, s);
-    if (s->settings.simulation.motion.trajectory) {
-        double last;
-        imk_trajectory_span(s->settings.simulation.motion.trajectory, &s->settings.start, &last);
-    }
+        code = complete(o, model, s);
     return code;
 }
 
@@ -244,4 +205,5 @@ void scene_free(scene *s)
 {
     imk_motion_file_free(s->motion);
     imk_temperature_file_free(s->temperature);
+    imk_result_free(s->result);
 }

@@ -45,6 +45,7 @@ static const option simulate_option_table[] = {
     {"increments", OPTION_FLAG, AT(increments),
      .help = "write increments of angle and velocity (dtheta_x, dvel_x) instead of rates"},
     DECIMALS_OPTION(AT(decimals)),
+    JSON_OPTION(AT(json), "print what was written as JSON; the log must go to a file"),
     {"gyro-unit", OPTION_UNIT, AT(gyro_unit), .value = "UNIT",
      .help = "unit of the gyro columns; default deg/s, or deg for increments"},
     {"accel-unit", OPTION_UNIT, AT(accel_unit), .value = "UNIT",
@@ -124,6 +125,8 @@ static int check_outputs(const simulate_options *o)
     if (o->format && !o->runs.given)
         return command_misused("--format is for --runs: a single log has it in its name, -o LOG.%s",
                                o->format);
+    if (o->json && strcmp(output, "-") == 0)
+        return command_misused("--json and the log cannot both go to standard output: add -o LOG");
     if (o->truth && strcmp(o->truth, "-") == 0 && strcmp(output, "-") == 0)
         return command_misused("the log and the truth cannot both go to standard output: add -o "
                                "LOG");
@@ -156,12 +159,12 @@ static int check(const simulate_options *o)
     return check_outputs(o);
 }
 
-static int simulate(const simulate_options *o, const imk_model *model)
+static int simulate(const simulate_options *o, const imk_model *model, const char *name)
 {
     scene s;
     int code = scene_open(o, model, &s);
     if (code < 0)
-        code = simulate_logs(o, model, &s);
+        code = simulate_logs(o, model, name, &s);
     scene_free(&s);
     return code;
 }
@@ -186,7 +189,7 @@ static int run(int count, char **words)
     if (code < 0)
         code = term_selection_apply(&o.terms, model);
     if (code < 0)
-        code = simulate(&o, model);
+        code = simulate(&o, model, operands[0]);
     free(model);
     return code;
 }

@@ -62,18 +62,16 @@ static void write_rows(const imk_spectrum_log *s, size_t channel, imk_output_fil
     const imk_log_column *column = imk_even_record_column(&s->record, channel);
     const imk_channel_spectrum *f = &s->channel[channel];
     const imk_unit unit = imk_channel_plain_unit(column);
-    const double scale = (s->settings.one_sided ? 2 : 1) / unit.scale / unit.scale;
     for (size_t i = 0; i < f->fine_count; i++) {
-        const imk_spectrum_band *b = &f->fine[i];
-        const double values[] = {b->frequency, b->density * scale, b->lower * scale,
-                                 b->upper * scale};
+        const imk_spectrum_band b = imk_spectrum_log_band(s, channel, &f->fine[i]);
+        const double values[] = {b.frequency, b.density, b.lower, b.upper};
         char text[IMK_DECIMAL_SIZE];
         imk_output_file_print(file, "%s", column->name);
         for (int k = 0; k < 4; k++) {
             text[imk_decimal_shortest(values[k], text)] = '\0';
             imk_output_file_print(file, ",%s", text);
         }
-        text[imk_decimal_significant(b->degrees, 6, text)] = '\0';
+        text[imk_decimal_significant(b.degrees, 6, text)] = '\0';
         imk_output_file_print(file, ",%s,%s,%s\n", text,
                               s->settings.one_sided ? "one-sided" : "two-sided", unit.text);
     }
@@ -110,19 +108,20 @@ static int show(const imk_spectrum_log *s, const spectrum_options *o, const char
 }
 
 /* A wrong option is not an error of the log. */
-static int tell(const spectrum_options *o, const char *path, const imk_spectrum_log *s,
-                imk_status status, const imk_error *error)
+static int tell(const char *path, const imk_spectrum_log *s, imk_status status,
+                const imk_error *error)
 {
     const imk_findings none = {.count = 0}, *findings = s ? &s->findings : &none;
     const imk_finding *failure = status == IMK_ERROR_RANGE ? imk_findings_failure(findings) : NULL;
     char text[400];
     log_input_note(path, findings);
+    if (status == IMK_ERROR_RANGE && strcmp(error->field, "from") == 0)
+        return command_misused(
+            "--from %g Hz: the spectrum of %s ends at half its sample rate, %g Hz", error->value,
+            path, error->limit);
     if (!failure)
         return log_input_tell(path, findings, status, error);
     imk_finding_text(failure, text, sizeof text);
-    if (strcmp(error->field, "from") == 0)
-        return command_misused("--from %g Hz: the spectrum of %s ends at half its sample rate, %s",
-                               o->settings.from, path, text);
     return command_misused("%s", text);
 }
 
@@ -140,7 +139,7 @@ static int analyse(const spectrum_options *o, const char *path)
     const imk_status status = imk_spectrum_log_run(&source, &o->settings, &t.job, &s, &error);
     threaded_job_end(&t);
     imk_log_close(reader);
-    code = tell(o, path, s, status, &error);
+    code = tell(path, s, status, &error);
     if (code < 0)
         code = show(s, o, path);
     imk_spectrum_log_free(s);

@@ -29,24 +29,15 @@ static int open_motion(tune_work *w, size_t m)
 /* Recorded motions state their rate. */
 static int choose_rate(tune_work *w)
 {
-    imk_filter_tuning_settings *s = &w->settings.tuning;
-    const char *of = NULL;
-    if (!isnan(w->o->rate))
-        s->rate = w->o->rate;
-    for (size_t m = 0; m < s->motion_count; m++) {
-        const imk_recorded_motion *recorded = s->motion[m].recorded;
-        if (!recorded)
-            continue;
-        const double rate = of || !isnan(w->o->rate) ? s->rate : recorded->rate;
-        if (!(fabs(recorded->rate - rate) <= 1e-6 * rate))
-            return command_misused("%s has %g samples a second, and %s; recorded rates and forces "
-                                   "are taken at their own rate",
-                                   w->name[1 + m], recorded->rate,
-                                   of ? "another motion has another rate" : "--rate is another");
-        s->rate = recorded->rate;
-        of = w->name[1 + m];
-    }
-    return -1;
+    imk_error error;
+    const double stated = isnan(w->o->rate) ? 0.0 : w->o->rate;
+    if (imk_tune_model_rate(stated, &w->settings.tuning, &error) == IMK_OK)
+        return -1;
+    return command_misused(
+        "%s has %g samples a second, and %s; recorded rates and forces are taken "
+        "at their own rate",
+        w->name[1 + error.index], error.value,
+        strstr(error.found, "another motion") ? error.found : "--rate is another");
 }
 
 int tune_scene_open(tune_work *w)

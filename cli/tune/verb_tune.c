@@ -76,16 +76,14 @@ static const option output_option_table[] = {
 
 /* ---- the model ---- */
 
-/* What a model does not state is not zero, and on a motion it is most of the errors. The bias from
- * run to run is known to the filter when a time begins. */
+/* What a model does not state is not zero, and on a motion it is most of the errors. */
 static void tell_unstated(const tune_work *w)
 {
     char names[300] = "";
     size_t used = 0;
     for (size_t i = 0; i < w->unstated.count && used < sizeof names; i++)
-        if (strcmp(w->unstated.term[i].key, "bias.repeatability") != 0)
-            used += (size_t)snprintf(names + used, sizeof names - used, "%s%s",
-                                     used > 0 ? ", " : "", w->unstated.term[i].text);
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", used > 0 ? ", " : "",
+                                 w->unstated.term[i].text);
     if (used > 0)
         command_warn("unstated",
                      "%s does not state %s: here that is zero, and the noise found is too small if "
@@ -102,27 +100,12 @@ static int open_model(tune_work *w)
                                   "gyros and accelerometers",
                                   w->name[0], sensor == IMK_GYRO ? "gyros" : "accelerometers");
     if (code < 0)
-        imk_model_unstated(w->model, &w->unstated);
+        imk_tune_model_unstated(w->model, &w->unstated);
     if (code < 0)
         code = term_selection_apply(&w->o->terms, w->model);
     if (code < 0 && w->o->assume_class)
         imk_model_assume_class(w->model, options_assumed_class(w->o->assume_class), &w->assumed);
     return code;
-}
-
-/* What was assumed, term by term. */
-static void show_assumed(const tune_work *w, imk_result *result)
-{
-    imk_result_array(result, "assumed");
-    for (size_t i = 0; i < w->assumed.count; i++)
-        imk_result_text(result, NULL, w->assumed.term[i].text);
-    imk_result_end(result);
-    for (size_t i = 0; i < w->assumed.count; i++) {
-        const imk_unstated_term *term = &w->assumed.term[i];
-        imk_result_line(result, "assumed: %s %.3g %s (%s)", term->text,
-                        term->typical / imk_unit_of(term->unit).scale, term->unit,
-                        imk_grade_table(term->grade) ? imk_grade_table(term->grade)->name : "-");
-    }
 }
 
 /* ---- the numbers as a file ---- */
@@ -148,7 +131,7 @@ static int write_parameters(const tune_work *w, const imk_model *made)
         if (notes->note[i].lost)
             command_warn("lost", "%s", notes->note[i].text);
         else
-            command_note("note: %s", notes->note[i].text);
+            command_note("assumed", "note: %s", notes->note[i].text);
     free(notes);
     return status == IMK_OK ? -1 : command_error(&error, NULL);
 }
@@ -188,8 +171,7 @@ static int show(const tune_work *w)
     if (code >= 0)
         return code;
     imk_result *result = show_begin("tune");
-    show_assumed(w, result);
-    imk_show_tune(w->r, result);
+    imk_show_tune(w->r, &w->assumed, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (!o->output)
         imk_result_line(result, "\nNext: write the numbers for a program with --to FORMAT -o FILE");

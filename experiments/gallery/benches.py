@@ -199,12 +199,12 @@ def _calibrate(settings, operands, procedure, options):
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     result = {"exit": done.returncode, "refused": None, "doubts": [], "warnings": [],
               "verdict": "", "parameters": []}
-    if not done.stdout:
+    data = json.loads(done.stdout or "{}")
+    if "result" not in data:
         result["refused"] = _refusal(done)
         return result
-    data = json.loads(done.stdout)
     found = data["result"]
-    result["warnings"] = [w["code"] for w in data["warnings"]]
+    result["warnings"] = [w["code"] for w in data["findings"] if w["level"] == "warning"]
     result["verdict"] = found["verdict"]
     result["level"] = found["level"]
     result["doubts"] = [s["code"] for s in found["sentences"]
@@ -360,12 +360,12 @@ def evaluate_once(settings, delay, seed):
     done = subprocess.run(["nice", settings["imukit"], "evaluate", *operands, "--json"],
                           capture_output=True, text=True, check=False)
     record.remove(operands[0])
-    if not done.stdout:
+    data = json.loads(done.stdout or "{}")
+    if "result" not in data:
         return {"refused": _refusal(done), "figures": {}, "warnings": []}
-    data = json.loads(done.stdout)
     channel = [c for c in data["result"]["channels"] if c["name"] == "gyro_z"][0]
     return {"refused": None, "figures": channel["figures"],
-            "warnings": [w["code"] for w in data["warnings"]]}
+            "warnings": [w["code"] for w in data["findings"] if w["level"] == "warning"]}
 
 
 def _moved(clean, late):

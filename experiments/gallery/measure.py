@@ -40,7 +40,7 @@ def identify(imukit, operands):
     return {"refused": None,
             "doubts": sorted({v["code"] for v in verdict if v["level"] in ("warning", "failure")}),
             "notes": {v["code"]: v["message"] for v in verdict if v["level"] in ("note", "good")},
-            "warnings": sorted({w["code"] for w in data["warnings"]}),
+            "warnings": sorted({w["code"] for w in data["findings"] if w["level"] == "warning"}),
             "channels": [_channel(c) for c in data["result"]["channels"]]}
 
 

@@ -84,7 +84,8 @@ IMK_API size_t imk_allan_workspace_size(imk_allan_statistic statistic, size_t n,
  *  the rate times the sample interval: multiply the deviation by dt. Time per factor: O(n), for
  *  Theo1 O(n log^2 m).
  *  @param n          rate samples; sums has n + 1 values
- *  @param factors    averaging factors in the statistic's range
+ *  @param factors    averaging factors in the statistic's range; also those for which the variance
+ *                    is defined, but has no interval: TOTDEV up to n, Theo1 from 2
  *  @param variances,counts  factor_count values; counts (may be NULL): number of squares, or
  *                    stretches, averaged
  *  @param workspace  imk_allan_workspace_size() bytes for executor->threads threads; any address

@@ -63,10 +63,10 @@ typedef struct imk_compensate_log {
  *  @param job     NULL: one thread, no progress, the memory of the C library
  *  @param result  free it with imk_compensate_log_free(), also after a failure, because it then
  *                 holds the findings; NULL if there was no memory for it
- *  @return errors of the source; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (the sample interval); with a
- *          finding that says why: IMK_ERROR_COLUMN, _UNIT_MISSING, _DIMENSION, _KEY_MISSING,
- *          _EMPTY, and errors of imk_compensator_start() ("model_refused") and of the sink
- *          ("not_written") */
+ *  @return errors of the source; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (a setting, the interval);
+ *          with a finding that says why: IMK_ERROR_COLUMN, _UNIT_MISSING, _DIMENSION, _KEY_MISSING,
+ *          _EMPTY, _CONFLICT (counts whose axes were turned), and errors of imk_compensator_start()
+ *          ("model_refused") and of the sink ("not_written") */
 IMK_API imk_status imk_compensate_log_run(const imk_record_source *source, const imk_model *model,
                                           const imk_compensate_log_settings *settings,
                                           const imk_record_sink *sink, const imk_job *job,

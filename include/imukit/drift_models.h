@@ -57,6 +57,40 @@ typedef struct imk_drift_wanted {
     bool retuned;
 } imk_drift_wanted;
 
+/** Read a requirement: a figure, its largest value and a time, such as "CEP 1 nmi @ 1h"; with
+ *  "after" in place of "@" the time counts from the end of the aids (imk_drift_outage()).
+ *  @param want   set to it; with `after`, add the end of the aids to its time
+ *  @param after  set to true where the time counts from there
+ *  @return IMK_ERROR_SYNTAX, _EMPTY (no limit or no time), _RANGE (the limit) */
+IMK_API imk_status imk_drift_wanted_parse(const char *text, imk_drift_wanted *want, bool *after,
+                                          imk_error *error);
+
+/** When to look at a drift. Zeros are defaults. */
+typedef struct imk_drift_when {
+    /** Length of the navigation [s], up to 1e8. Default: the time of the requirement, else the
+     *  length of the motion, at rest 24 h. */
+    double duration;
+    size_t time_count;
+    const double *time; /**< times of the table instead, in any order [s] */
+    size_t outage_count;
+    /** Or times after the end of the aids [s]. Default, where aids end and neither a duration nor
+     *  times are stated: 10 s, 60 s and 300 s, as far as the motion goes. */
+    const double *outage;
+    double motion; /**< length of the motion [s], infinite if it has no end; 0: at rest */
+    bool curves;   /**< add times for curves */
+} imk_drift_when;
+
+/** Choose the times of an analysis by what is asked (imk_drift_times_choose()).
+ *  @param settings  motion, rate and aids are used
+ *  @param want      its time is one of the table; NULL: none
+ *  @return IMK_ERROR_MEMORY; IMK_ERROR_RANGE (error.field: "duration", "times", "outage",
+ *          "want.time" beyond the duration, "motion" shorter than the last time), _CONFLICT (more
+ *          than one of duration, time and outage), _EMPTY ("outage": no aid ends; no times) */
+IMK_API imk_status imk_drift_times_ask(const imk_drift_when *when,
+                                       const imk_drift_settings *settings,
+                                       const imk_drift_wanted *want, const imk_allocator *allocator,
+                                       imk_drift_times *times, imk_error *error);
+
 /** Settings of the job. Start from imk_drift_models_default(). */
 typedef struct imk_drift_models_settings {
     uint32_t cookie;
@@ -193,6 +227,15 @@ IMK_API imk_status imk_drift_models_run(size_t count, const imk_model *const *mo
  *  @return IMK_ERROR_MEMORY */
 IMK_API imk_status imk_drift_models_take_runs(imk_drift_models *models, size_t runs, int degrees,
                                               const double *errors, imk_error *error);
+/** Simulate runs of the last case on the threads of the job, and take their statistics
+ *  (imk_drift_models_take_runs()). They are the runs 0 … runs - 1 of imk_drift_runs() or
+ *  imk_drift_aided_runs(), whatever the number of threads.
+ *  @param errors  set to [run][row][state]: IMK_DRIFT_STATES, with aids IMK_DRIFT_AIDED_STATES
+ *                 states; memory of the result. NULL: not wanted
+ *  @return errors of these; IMK_ERROR_MEMORY, IMK_ERROR_RANGE (no runs, or more than 2^32 - 1) */
+IMK_API imk_status imk_drift_models_simulate(imk_drift_models *models, uint64_t seed, uint64_t runs,
+                                             const imk_job *job, const double **errors,
+                                             imk_error *error);
 /** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_drift_models_free(imk_drift_models *result);
 

@@ -68,6 +68,28 @@ IMK_API imk_status imk_evaluate_record(imk_evaluate_log *evaluation,
  *  @return IMK_ERROR_MEMORY */
 IMK_API imk_status imk_evaluate_at_rest(imk_evaluate_log *evaluation, const imk_even_record *record,
                                         imk_error *error);
+/** Add the readings of a source: a table, if its columns are those of one, else a record of a test.
+ *  @param name      what it is called in findings; must live as long as the call
+ *  @param settings  of a record: section, motion, motion_offset, find_offset, table_axis
+ *  @param job       NULL: no progress, memory of the C library
+ *  @return with a finding in evaluation->findings, errors of imk_evaluate_table(),
+ *          imk_calibrate_record_load() and imk_evaluate_record() */
+IMK_API imk_status imk_evaluate_source(imk_evaluate_log *evaluation, const char *name,
+                                       const imk_record_source *source,
+                                       const imk_calibrate_log_settings *settings,
+                                       const imk_job *job, imk_error *error);
+/** Identify the noise of a source at rest: imk_even_record_load(), imk_evaluate_at_rest().
+ *  @return errors of these, with a finding in evaluation->findings */
+IMK_API imk_status imk_evaluate_rest_source(imk_evaluate_log *evaluation,
+                                            const imk_record_source *source, imk_gap_policy gaps,
+                                            const imk_job *job, imk_error *error);
+/** Compare all figures with limits (imk_evaluate_assess()).
+ *  @param missed  number of figures beyond their limits, or not determined
+ *  @return for a limit of no figure (error.index: which) IMK_ERROR_CONFLICT, or why its figure
+ *          cannot have it */
+IMK_API imk_status imk_evaluate_limits_check(imk_evaluate_log *evaluation, size_t count,
+                                             imk_evaluate_limit *limits, size_t *missed,
+                                             imk_error *error);
 /** Convert the readings of a channel from counts to the unit of its reference.
  *  @param sensitivity  [counts per SI unit of the reference]
  *  @param zero         reading at zero [counts] */

@@ -84,6 +84,18 @@ IMK_API void imk_evaluate_channel_figures(imk_evaluate_channel *channel);
 IMK_API void imk_evaluate_rest_figures(imk_evaluate_rest *rest);
 /** Keys of the figures that may have a limit. @return number of keys */
 IMK_API size_t imk_evaluate_limit_keys(const char *key[IMK_EVALUATE_ROWS]);
+/** Read limits: "linearity 0.05 %, zero 0.2 deg/s".
+ *  @param text    NULL: none
+ *  @param limits  room for IMK_EVALUATE_LIMITS
+ *  @return IMK_ERROR_SYNTAX (error.found: the limit), IMK_ERROR_NAME_UNKNOWN (error.found: the key,
+ *          error.expected: the nearest one), IMK_ERROR_WORKSPACE (too many) */
+IMK_API imk_status imk_evaluate_limits_parse(const char *text, imk_evaluate_limit *limits,
+                                             size_t *count, imk_error *error);
+/** Is the figure beyond its limit, or not determined? */
+IMK_API bool imk_evaluate_missed(const imk_evaluate_row *row);
+/** A sentence that says so of a channel. @return its length, as snprintf() */
+IMK_API size_t imk_evaluate_missed_text(const char *name, const imk_evaluate_row *row, char *text,
+                                        size_t size);
 /** Compare a figure of the channel `name` with the limits of the same key and dimension (gyros and
  *  accelerometers may have different ones). A limit is met when the whole interval is within it:
  *  conformity with measurement uncertainty [JCGM106]. Sets the verdict, and marks the limits used.

@@ -127,6 +127,14 @@ typedef struct imk_log_reader imk_log_reader;
 IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settings,
                                 imk_log_reader **reader, imk_error *error);
 
+/** As imk_log_open(), for a first look: a log of which units, times or names are missing is opened
+ *  with settings.as_written.
+ *  @param lacking  receives what is missing; its status is IMK_OK if nothing is
+ *  @return errors of imk_log_open() */
+IMK_API imk_status imk_log_open_first_look(const char *path, const imk_log_settings *settings,
+                                           imk_log_reader **reader, imk_error *lacking,
+                                           imk_error *error);
+
 /** The sensors of a log, without choosing one: as imk_log_open(), but settings.topic and .instance
  *  are left aside. Only what stands at the beginning, at the end and in an index of the file is
  *  read.
@@ -289,6 +297,9 @@ typedef struct imk_log_sink {
     int64_t origin;         /**< see imk_log_write_origin() [ns] */
     imk_log_writer *writer; /**< its own */
     imk_record_source labels;
+    uint64_t rows; /**< written so far */
+    size_t column_count;
+    imk_log_column column[IMK_LOG_COLUMNS_MAX]; /**< as they are in the file */
 } imk_log_sink;
 
 /** Make a record sink of a log, whose path and precision must be set. */

@@ -40,6 +40,10 @@ IMK_API imk_status imk_motion_read(const char *path, const imk_log_settings *set
 /** As imk_motion_read(), for a script in memory. */
 IMK_API imk_status imk_motion_parse(const char *text, size_t size, const imk_geodetic *place,
                                     uint64_t seed, imk_motion_file **file, imk_error *error);
+/** As imk_motion_read(), for a table whose rows come from a source: arrays of poses, or of rates
+ * and forces, in the columns named there. */
+IMK_API imk_status imk_motion_of_record(const imk_record_source *source, const imk_geodetic *place,
+                                        imk_motion_file **file, imk_error *error);
 /** Free a file and everything its motion points to; NULL is allowed. */
 IMK_API void imk_motion_file_free(imk_motion_file *file);
 
@@ -68,6 +72,10 @@ typedef struct imk_temperature_file imk_temperature_file;
  *  the row */
 IMK_API imk_status imk_temperature_read(const char *path, imk_temperature_file **file,
                                         imk_error *error);
+/** As imk_temperature_read(), for a table whose rows come from a source with the columns time and
+ *  temperature. */
+IMK_API imk_status imk_temperature_of_record(const imk_record_source *source,
+                                             imk_temperature_file **file, imk_error *error);
 /** Free a file and its profile; NULL is allowed. */
 IMK_API void imk_temperature_file_free(imk_temperature_file *file);
 /** Profile for imk_temperature_at(); valid until the file is freed. */

@@ -63,16 +63,17 @@ typedef struct imk_navigate_log_settings {
     const imk_record_source *aids;
     const char *aids_name; /**< its name in findings; must outlive the result */
     /** Kinds of aids whose sigmas are stated, which are used instead of columns of sigmas; kinds
-     *  with neither are not used. `interval`, `from` and `until` are not used. */
+     *  with neither are not used. Each kind once; `interval`, `from` and `until` as by default,
+     *  because the times are those of the record. */
     size_t aid_count;
     imk_aid aid[IMK_AIDS_MAX];
-    double lever_arm[3], lever_arm_sigma[3]; /**< of position, velocity and height, for kinds whose
-                                                sigmas are columns [m] */
-    double speed_lever_arm[3];               /**< of speed [m] */
-    double aid_delay;    /**< readings are older by this than their times say [s] */
-    double aid_interval; /**< shortest time between readings that are used [s]; 0: all are */
-    double aid_until;    /**< later readings are only compared; from the log's first row [s];
-                            default infinity */
+    /** Of position, velocity and height, unless an aid above has one of its own [m]. */
+    double lever_arm[3], lever_arm_sigma[3];
+    double speed_lever_arm[3]; /**< the same of speed [m] */
+    double aid_delay;          /**< readings are older by this than their times say [s] */
+    double aid_interval;       /**< shortest time between readings that are used [s]; 0: all are */
+    double aid_until;          /**< later readings are only compared; from the log's first row [s];
+                                  default infinity */
     /** Smooth the track backwards: later readings and stops correct earlier rows. Needs a model;
      *  not with still_rotation. Memory: see navigation_smoother.h; default false. */
     bool smooth;

@@ -49,6 +49,13 @@ typedef struct imk_physics_log_settings {
     bool view_input; /**< true: views use `input`; false: the input that each view states */
 } imk_physics_log_settings;
 
+/** Check the input: angular rates and specific forces up to 1e6 [rad/s], [m/s^2]; temperatures
+ *  above 0 and up to 1e4 [K], also at the end of `duration`; a sine with at least four samples a
+ *  cycle. The jobs do so.
+ *  @return IMK_ERROR_RANGE with the field "angular_rate", "specific_force", "frequency",
+ *          "temperature" or "temperature_rate" */
+IMK_API imk_status imk_physics_input_check(const imk_physics_log_settings *settings,
+                                           imk_error *error);
 /** At rest at 20 degC, 100 Hz. Instrument, design and duration must be set. */
 IMK_API imk_physics_log_settings imk_physics_log_default(void);
 /** Number of rows in settings->duration at a rate [Hz]. */
@@ -154,7 +161,8 @@ IMK_API const char *imk_physics_sweep_verdict(const imk_physics_sweep *sweep, si
 
 /** Convert the numbers of an error of a validate or init function from SI to the unit of the field
  *  that the error names, for the message: `"30 kHz" is outside its valid range (limit 10 kHz)`.
- *  Fields that are not in the table, and values that are not in the design, stay as they are.
+ *  Also "step" and "rate" of the settings. Fields that are not in the table, and values that are
+ *  not in the design, stay as they are.
  *  @param design  the design that was refused */
 IMK_API void imk_design_error_in_units(const imk_instrument *instrument, const void *design,
                                        imk_error *error);

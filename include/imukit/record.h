@@ -162,6 +162,7 @@ IMK_API imk_log_column imk_record_column(const char *name);
 typedef struct imk_array_source {
     imk_log_column column[IMK_LOG_COLUMNS_MAX];
     const double *data[IMK_LOG_COLUMNS_MAX];
+    ptrdiff_t stride[IMK_LOG_COLUMNS_MAX];
     size_t column_count, rows, next;
     double rate;
     imk_log_findings findings;
@@ -180,6 +181,13 @@ IMK_API imk_status imk_array_source_make(size_t column_count, const char *const 
                                          const double *const *data, size_t rows, double rate,
                                          imk_array_source *memory, imk_record_source *source,
                                          imk_error *error);
+/** As imk_array_source_make(), for arrays whose numbers do not follow one another, such as the
+ *  columns of a matrix that is stored row by row.
+ *  @param strides  per column: distance of the numbers of two rows [doubles], of any sign */
+IMK_API imk_status imk_array_source_strided(size_t column_count, const char *const *names,
+                                            const double *const *data, const ptrdiff_t *strides,
+                                            size_t rows, double rate, imk_array_source *memory,
+                                            imk_record_source *source, imk_error *error);
 
 /** Where the rows of a record go. */
 typedef struct imk_record_sink {

@@ -78,9 +78,9 @@ typedef struct imk_record_plan {
  *  @param job     NULL: one thread, no progress, the memory of the C library
  *  @param result  free it with imk_record_plan_free(), also after a failure, because it then holds
  *                 the findings; NULL if there was no memory for it
- *  @return errors of imk_identify_duration(); IMK_ERROR_MEMORY; with a finding that says why:
- *          IMK_ERROR_RANGE (duration), _EMPTY (the model has no noise), _SYNTAX and _NAME_UNKNOWN
- *          (in a requirement) */
+ *  @return errors of imk_identify_duration(); IMK_ERROR_RANGE (rate, duration, significance);
+ *          IMK_ERROR_MEMORY; with a finding that says why: IMK_ERROR_RANGE (duration),
+ *          _EMPTY (no noise), _SYNTAX and _NAME_UNKNOWN (in a requirement) */
 IMK_API imk_status imk_record_plan_run(const imk_model *model,
                                        const imk_record_plan_settings *settings, const imk_job *job,
                                        imk_record_plan **result, imk_error *error);

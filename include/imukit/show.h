@@ -18,6 +18,7 @@
 #include "imukit/physics_log.h"
 #include "imukit/record_plan.h"
 #include "imukit/result.h"
+#include "imukit/simulate_log.h"
 #include "imukit/spectrum_log.h"
 #include "imukit/technology_map.h"
 #include "imukit/tune_model.h"
@@ -55,6 +56,17 @@ IMK_API void imk_show_spectrum_log(const imk_spectrum_log *spectrum, const char 
 
 /** Show the attitude at the start, the track and its end, and a figure. */
 IMK_API void imk_show_navigate_log(const imk_navigate_log *n, const char *name, imk_result *result);
+/** Show the settings of a simulation. The logs that it wrote are shown by imk_show_written().
+ *  @param model,motion,temperature  names of the files; NULL: none
+ *  @param runs                      number of runs */
+IMK_API void imk_show_simulate_inputs(const imk_simulate_log_settings *settings, const char *model,
+                                      const char *motion, const char *temperature, uint64_t runs,
+                                      imk_result *result);
+/** Show a log that was written, as data only.
+ *  @param key      NULL in an array
+ *  @param columns  `column_count` of them, with the units of the file */
+IMK_API void imk_show_written(const char *key, const char *file, uint64_t rows, size_t column_count,
+                              const imk_log_column *columns, imk_result *result);
 /** Show the terms taken out, and the counts of the run. @param model  name of the model */
 IMK_API void imk_show_compensate_log(const imk_compensate_log *log, const char *name,
                                      const char *model, imk_result *result);
@@ -199,8 +211,10 @@ typedef struct imk_drift_shown {
 /** Show the growth of errors, budgets, runs, the answer to the requirement, and figures. */
 IMK_API void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *shown,
                             imk_result *result);
-/** Show the noise of a filter, how consistent it is, what makes the errors, and a figure. */
-IMK_API void imk_show_tune(const imk_tune_model *r, imk_result *result);
+/** Show the noise of a filter, how consistent it is, what makes the errors, and a figure.
+ *  @param assumed  what was assumed of the model (imk_model_assume_class()); NULL: nothing was */
+IMK_API void imk_show_tune(const imk_tune_model *r, const imk_unstated *assumed,
+                           imk_result *result);
 /** Write why no constant noise describes the errors; "" where one does.
  *  @param size  of `text` [bytes] */
 IMK_API void imk_tune_verdict(const imk_tune_model *r, char *text, size_t size);

@@ -66,8 +66,8 @@ IMK_API imk_simulation imk_simulation_default(void);
 /** A running simulation. Opaque: memory of imk_simulator_size() bytes, given by the caller. */
 typedef struct imk_simulator imk_simulator;
 
-/** Bytes for a simulator of this model (which must be valid): about 35 kB a channel, 4 kB for each
- *  Gauss-Markov term, sinusoid and resonance of it, and 1 to 10 MB for a unit that moves. */
+/** Bytes for a simulator of this model (which must be valid): about 15 kB a channel, 0.6 kB for
+ * each Gauss-Markov term, sinusoid and resonance of it, and 1 to 10 MB for a unit that moves. */
 IMK_API size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation);
 
 /** Validate and start.

@@ -60,12 +60,17 @@ typedef struct imk_spectrum_log {
  *  @param job     NULL: one thread, no progress, the memory of the C library
  *  @param result  free it with imk_spectrum_log_free(), also after a failure, because it then holds
  *                 the findings; NULL if there was no memory for it
- *  @return errors of imk_even_record_load(); IMK_ERROR_RANGE (error.field "from" or "resolution");
+ *  @return errors of imk_even_record_load(); IMK_ERROR_RANGE (error.field "confidence",
+ *          "false_alarm", "from", "to" or "resolution");
  *          with a finding that says why: IMK_ERROR_CONSTANT, _TOO_SHORT, _GAP */
 IMK_API imk_status imk_spectrum_log_run(const imk_record_source *source,
                                         const imk_spectrum_log_settings *settings,
                                         const imk_job *job, imk_spectrum_log **result,
                                         imk_error *error);
+/** A band as it is shown: in the convention of the settings, and in the channel's plain unit
+ *  (imk_channel_plain_unit()). */
+IMK_API imk_spectrum_band imk_spectrum_log_band(const imk_spectrum_log *spectrum, size_t channel,
+                                                const imk_spectrum_band *band);
 /** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_spectrum_log_free(imk_spectrum_log *result);
 

@@ -7,6 +7,7 @@
 
 #include "imukit/filter_tuning.h"
 #include "imukit/job.h"
+#include "imukit/model_unstated.h"
 
 IMK_BEGIN_C
 
@@ -21,6 +22,17 @@ typedef struct imk_tune_model_settings {
 
 /** As imk_filter_tuning_default(), without runs. */
 IMK_API imk_tune_model_settings imk_tune_model_default(void);
+
+/** Choose the rate of the readings: recorded motions state theirs.
+ *  @param stated  the rate asked for [Hz]; 0: that of the recorded motions, else the default
+ *  @return IMK_ERROR_CONFLICT: a recorded motion (error.index) has another rate (error.value) than
+ *          the one stated or that of another motion (error.limit) */
+IMK_API imk_status imk_tune_model_rate(double stated, imk_filter_tuning_settings *tuning,
+                                       imk_error *error);
+
+/** Terms that a model does not state and that tuning takes as zero: those of imk_model_unstated()
+ *  but the bias from run to run, which the filter knows when a time begins. */
+IMK_API void imk_tune_model_unstated(const imk_model *model, imk_unstated *unstated);
 
 /** NEES found by the runs at one time, and its 99 % interval, which holds for all times of an
  *  answer together (Student, Bonferroni). */

@@ -49,6 +49,9 @@ typedef struct imki_exposure {
     imki_component force[3], rate[3], acceleration[3];
     bool turns; /* w or the angular acceleration is not zero throughout */
     const double *temperature, *temperature_rate, *warm_up, *hysteresis;
+    /* Of imki_distort_chunks() and imki_distort_pair(): bias and scale factor of each sample, of
+     * sensors side by side; NULL: those of the axis. Never -0. */
+    const double *bias, *scale;
 } imki_exposure;
 
 imki_exposure imki_expose(int sensor, const imk_stimulus *stimulus);
@@ -56,6 +59,9 @@ imki_exposure imki_expose(int sensor, const imk_stimulus *stimulus);
 /* What an axis reads over whole chunks. */
 void imki_distort_chunks(imk_kernel kernel, const imk_axis_response *axis,
                          const imki_exposure *exposure, size_t chunks, double *out);
+
+/* The same of two samples only. */
+void imki_distort_pair(const imk_axis_response *axis, const imki_exposure *exposure, double *out);
 
 /* The same where the motion stays what it is in the first chunk, which is all that is read of it;
  * the warm-up alone goes on, and there is no temperature. */

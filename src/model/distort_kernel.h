@@ -16,7 +16,10 @@
 #define KERNEL static inline __attribute__((always_inline))
 
 /* Four vectors at a time hide the latency of a sum, and fit the registers. */
-enum { VECTORS = 4, STEP = VECTORS * LANES };
+#ifndef VECTORS
+#define VECTORS 4
+#endif
+enum { STEP = VECTORS * LANES };
 
 /* Arrays of double of any alignment. */
 typedef double lanes __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
@@ -202,6 +205,10 @@ KERNEL void distort_step(const imk_axis_response *axis, const imki_exposure *x, 
     for (int v = 0; v < VECTORS; v++) {
         y[v] = (lanes){0.0} + axis->bias;
         scale[v] = (lanes){0.0} + axis->scale;
+    }
+    for (int v = 0; v < VECTORS && x->bias; v++) {
+        y[v] = VECTOR(x->bias + i, v);
+        scale[v] = VECTOR(x->scale + i, v);
     }
     if (x->temperature)
         add_temperature(y, scale, axis, x->temperature + i);

@@ -78,7 +78,7 @@ static imk_status start(void *state, imki_term_place place, double dt, imk_rando
     return imk_angle_white_start(state, strength(place), dt, random, stream);
 }
 
-static const imki_generator generator = {.state_size = sizeof(imk_angle_white_state),
+static const imki_generator generator = {.state_size = IMKI_STATE_SIZE(imk_angle_white_state),
                                          .start = start,
                                          .field = "noise.angle_white",
                                          .refused = strength,
@@ -126,7 +126,8 @@ static imk_status start_reading(void *state, imki_term_place place, double dt, i
     return imk_angle_white_start(state, reading(place) * sqrt(dt), dt, random, stream);
 }
 
-static const imki_generator reading_generator = {.state_size = sizeof(imk_angle_white_state),
+static const imki_generator reading_generator = {.state_size =
+                                                     IMKI_STATE_SIZE(imk_angle_white_state),
                                                  .start = start_reading,
                                                  .field = "noise.reading_noise",
                                                  .refused = reading,

@@ -134,7 +134,7 @@ static imk_status start(void *state, imki_term_place place, double dt, imk_rando
                                     random, stream);
 }
 
-const imki_generator imki_filtered_white = {.state_size = sizeof(imk_arma_state),
+const imki_generator imki_filtered_white = {.state_size = IMKI_STATE_SIZE(imk_arma_state),
                                             .start = start,
                                             .field = "bandwidth",
                                             .refused = bandwidth,

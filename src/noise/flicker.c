@@ -319,7 +319,7 @@ static imk_status start(void *state, imki_term_place place, double dt, imk_rando
     return imk_flicker_start(state, flicker_at(place), dt, random, stream);
 }
 
-static const imki_generator generator = {.state_size = sizeof(imk_flicker_state),
+static const imki_generator generator = {.state_size = IMKI_STATE_SIZE(imk_flicker_state),
                                          .start = start,
                                          .field = "noise.bias_instability",
                                          .refused = strength,

@@ -114,13 +114,14 @@ static size_t draws(const void *state, double *normals, imki_draw *draw)
 static void blocks(void *states, size_t count, imk_kernel kernel, double *normals, double *block)
 {
     imki_recursion recursions[IMKI_TOGETHER];
-    imk_gauss_markov_state *process = states;
     for (size_t i = 0; i < count; i++) {
-        recursions[i] = (imki_recursion){.gain = process[i].gain,
-                                         .power = process[i].power,
+        imk_gauss_markov_state *process =
+            (void *)((char *)states + i * IMKI_STATE_SIZE(imk_gauss_markov_state));
+        recursions[i] = (imki_recursion){.gain = process->gain,
+                                         .power = process->power,
                                          .normals = normals + i * IMK_NOISE_BLOCK,
-                                         .value = &process[i].value};
-        process[i].next += IMK_NOISE_BLOCK;
+                                         .value = &process->value};
+        process->next += IMK_NOISE_BLOCK;
     }
     imki_add_recursions(kernel, recursions, count, block);
 }
@@ -148,7 +149,7 @@ static imk_status start(void *state, imki_term_place place, double dt, imk_rando
     return imk_gauss_markov_start(state, process_at(place), dt, random, stream);
 }
 
-static const imki_generator generator = {.state_size = sizeof(imk_gauss_markov_state),
+static const imki_generator generator = {.state_size = IMKI_STATE_SIZE(imk_gauss_markov_state),
                                          .start = start,
                                          .field = "noise.gauss_markov",
                                          .refused = correlation_time,

@@ -42,6 +42,40 @@ static inline double imki_round(double x)
     return (x + shift) - shift;
 }
 
+/* 0 within +-dead_band, and no further than +-range (0 and infinity: none). */
+static inline double imki_saturated(double x, double dead_band, double range)
+{
+    const double size = x < 0.0 ? -x : x;
+    x = size < dead_band ? 0.0 : x;
+    x = x < -range ? -range : x;
+    return x > range ? range : x;
+}
+
+/* The steps of quantization.c. */
+typedef struct imki_quantizer {
+    double lsb, dt, per_step, rate_step;
+} imki_quantizer;
+
+static inline imki_quantizer imki_quantizer_of(double lsb, double dt)
+{
+    return (imki_quantizer){lsb, dt, 1.0 / lsb, lsb / dt};
+}
+
+/* One sample, the last of a segment (`end`) or another; residual, sum and counted as in
+ * imk_quantization_state. What is not finite is passed on, and adds nothing to the integral. */
+static inline double imki_quantized(const imki_quantizer *q, bool end, double x, double *residual,
+                                    double *sum, double *counted)
+{
+    const bool finite = x - x == 0.0;
+    const double now = *sum + (finite ? x : 0.0) * q->dt, integral = *residual + now;
+    const double steps = imki_round(integral * q->per_step);
+    const double y = (steps - *counted) * q->rate_step;
+    *residual = end ? integral - steps * q->lsb : *residual;
+    *sum = end ? 0.0 : now;
+    *counted = end ? 0.0 : steps;
+    return finite ? y : x;
+}
+
 /* |sin(pi c)| of c cycles: c is reduced exactly to +-1/2 first. */
 static inline double imki_sin_half_turns(double c)
 {
@@ -112,8 +146,7 @@ void imki_add_sums(imk_kernel kernel, double gain, const double *normals, double
                    double *block);
 /* Replace rates by quantised ones (quantization.c); *residual is carried. */
 void imki_quantize(imk_kernel kernel, double lsb, double dt, double *residual, double *block);
-/* Elements within +-dead_band become 0, those beyond +-range the end of it (0 and infinity: none).
- */
+/* imki_saturated() of each element */
 void imki_saturate(imk_kernel kernel, double dead_band, double range, double *block);
 /* Two recursions as above, and the changes of a held stage: change[k] = phi change[k-1] + change[k]
  * with the phi of the second one, change[-1] being `held`. */
@@ -127,6 +160,9 @@ void imki_add_held(imk_kernel kernel, const double *held, size_t offset, double 
 void imki_to_time_order(imk_kernel kernel, const double *block, double *out);
 /* the reverse */
 void imki_to_segment_order(imk_kernel kernel, const double *samples, double *block);
+/* Eight blocks side by side: sample k of block i becomes out[k * stride + i]. */
+enum { IMKI_INTERLEAVED = 8 };
+void imki_interleave(imk_kernel kernel, const double *const *blocks, double *out, size_t stride);
 
 enum { IMKI_FLICKER_NORMALS = 2 * IMK_NOISE_BLOCK + IMKI_FLICKER_CHANGES };
 

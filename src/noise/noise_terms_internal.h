@@ -8,6 +8,8 @@
 #include "generator_internal.h"
 #include "imukit/model.h"
 
+#include <stddef.h>
+
 /* Where the numbers of a term stand: an axis of a triad, and an element of a list (else 0). */
 typedef struct imki_term_place {
     const imk_triad *triad;
@@ -25,8 +27,13 @@ enum {
     IMKI_TOGETHER = 2,  /* states that one call of `blocks` takes at most */
 };
 
+/* Bytes of a state here: without the samples at its end, which only imk_…_add() hands out. */
+#define IMKI_STATE_SIZE(type) offsetof(type, block)
+enum { IMKI_STATE_MAX = sizeof(imk_flicker_state) }; /* of whole states */
+
 typedef struct imki_generator {
-    size_t state_size;
+    size_t state_size; /* IMKI_STATE_SIZE(), and how far states stand apart */
+    /* @param state  a whole one */
     imk_status (*start)(void *state, imki_term_place place, double dt, imk_random random,
                         uint64_t stream);
     const char *field; /* what `start` refuses: key and number of the model */

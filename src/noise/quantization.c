@@ -48,19 +48,10 @@ void imk_quantization_apply(imk_quantization_state *state, size_t count, double 
 {
     if (!(state->lsb > 0.0))
         return;
-    double per_step = 1.0 / state->lsb, rate_step = state->lsb / state->dt;
-    for (size_t i = 0; i < count; i++) {
-        state->sum += out[i] * state->dt;
-        double integral = state->residual + state->sum;
-        double steps = imki_round(integral * per_step);
-        out[i] = (steps - state->counted) * rate_step;
-        state->counted = steps;
-        if (++state->next % IMK_NOISE_STEPS == 0) {
-            state->residual = integral - steps * state->lsb;
-            state->sum = 0.0;
-            state->counted = 0.0;
-        }
-    }
+    const imki_quantizer quantizer = imki_quantizer_of(state->lsb, state->dt);
+    for (size_t i = 0; i < count; i++)
+        out[i] = imki_quantized(&quantizer, ++state->next % IMK_NOISE_STEPS == 0, out[i],
+                                &state->residual, &state->sum, &state->counted);
 }
 
 void imki_quantization_block(imk_quantization_state *state, imk_kernel kernel, double *block)

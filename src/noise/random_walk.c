@@ -68,7 +68,7 @@ static imk_status start(void *state, imki_term_place place, double dt, imk_rando
     return imk_random_walk_start(state, strength(place), dt, random, stream);
 }
 
-static const imki_generator generator = {.state_size = sizeof(imk_random_walk_state),
+static const imki_generator generator = {.state_size = IMKI_STATE_SIZE(imk_random_walk_state),
                                          .start = start,
                                          .field = "noise.random_walk",
                                          .refused = strength,

@@ -97,7 +97,7 @@ static imk_status start(void *state, imki_term_place place, double dt, imk_rando
     return imk_resonance_start(state, resonance_at(place), dt, random, stream);
 }
 
-static const imki_generator generator = {.state_size = sizeof(imk_arma_state),
+static const imki_generator generator = {.state_size = IMKI_STATE_SIZE(imk_arma_state),
                                          .start = start,
                                          .field = "noise.resonance",
                                          .refused = frequency,

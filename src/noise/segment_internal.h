@@ -18,7 +18,8 @@
     void imki_saturate_##isa(double dead_band, double range, double *block);                       \
     void imki_add_held_##isa(const double *held, size_t offset, double *block);                    \
     void imki_to_time_order_##isa(const double *block, double *out);                               \
-    void imki_to_segment_order_##isa(const double *samples, double *block);
+    void imki_to_segment_order_##isa(const double *samples, double *block);                        \
+    void imki_interleave_##isa(const double *const *blocks, double *out, size_t stride);
 IMKI_SEGMENT_LOOPS(portable)
 IMKI_SEGMENT_LOOPS(avx2)
 IMKI_SEGMENT_LOOPS(avx512)

@@ -178,12 +178,8 @@ KERNEL void quantize(double lsb, double dt, double *restrict residual, double *r
 /* Plain loops: comparisons of vectors are taken apart by the compiler. */
 KERNEL void saturate(double dead_band, double range, double *restrict block)
 {
-    for (size_t j = 0; j < IMK_NOISE_BLOCK; j++) {
-        double x = block[j], size = x < 0.0 ? -x : x;
-        x = size < dead_band ? 0.0 : x;
-        x = x < -range ? -range : x;
-        block[j] = x > range ? range : x;
-    }
+    for (size_t j = 0; j < IMK_NOISE_BLOCK; j++)
+        block[j] = imki_saturated(block[j], dead_band, range);
 }
 
 enum { ROWS = 8 };
@@ -289,6 +285,19 @@ KERNEL void to_segment_order(const double *restrict samples, double *restrict bl
             transpose(samples + s * STEPS + i, STEPS, block + i * SEGMENTS + s, SEGMENTS);
 }
 
+KERNEL void interleave(const double *const *blocks, double *restrict out, size_t stride)
+{
+    row a[ROWS];
+    for (size_t s = 0; s < SEGMENTS; s += ROWS)
+        for (size_t i = 0; i < STEPS; i++) {
+            for (size_t k = 0; k < ROWS; k++)
+                a[k] = *(const row *)(blocks[k] + i * SEGMENTS + s);
+            transpose_rows(a);
+            for (size_t k = 0; k < ROWS; k++)
+                *(row *)(out + ((s + k) * STEPS + i) * stride) = a[k];
+        }
+}
+
 /* The loops as functions of one instruction set. */
 #define COMPILE_FOR(isa, target)                                                                   \
     target void imki_add_scaled_##isa(double scale, const double *normals, double *block)          \
@@ -341,6 +350,10 @@ KERNEL void to_segment_order(const double *restrict samples, double *restrict bl
     target void imki_to_segment_order_##isa(const double *samples, double *block)                  \
     {                                                                                              \
         to_segment_order(samples, block);                                                          \
+    }                                                                                              \
+    target void imki_interleave_##isa(const double *const *blocks, double *out, size_t stride)     \
+    {                                                                                              \
+        interleave(blocks, out, stride);                                                           \
     }
 
 #endif

@@ -65,3 +65,8 @@ void imki_to_segment_order(imk_kernel kernel, const double *samples, double *blo
 {
     IMKI_CALL(kernel, imki_to_segment_order, samples, block);
 }
+
+void imki_interleave(imk_kernel kernel, const double *const *blocks, double *out, size_t stride)
+{
+    IMKI_CALL(kernel, imki_interleave, blocks, out, stride);
+}

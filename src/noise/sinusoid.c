@@ -89,7 +89,7 @@ static imk_status start(void *state, imki_term_place place, double dt, imk_rando
     return imk_sinusoid_start(state, sinusoid_at(place), dt, random, stream);
 }
 
-static const imki_generator generator = {.state_size = sizeof(imk_sinusoid_state),
+static const imki_generator generator = {.state_size = IMKI_STATE_SIZE(imk_sinusoid_state),
                                          .start = start,
                                          .field = "noise.sinusoid",
                                          .refused = frequency,

@@ -60,7 +60,7 @@ static imk_status start(void *state, imki_term_place place, double dt, imk_rando
     return imk_white_start(state, strength(place), dt, random, stream);
 }
 
-static const imki_generator generator = {.state_size = sizeof(imk_white_state),
+static const imki_generator generator = {.state_size = IMKI_STATE_SIZE(imk_white_state),
                                          .start = start,
                                          .field = "noise.white",
                                          .refused = strength,

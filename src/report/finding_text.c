@@ -284,7 +284,6 @@ static const struct message {
                          "--resolution, or --gaps longest"},
     {"resolution", "--resolution {0g} Hz: {name}; this record of {1g} s at {2g} Hz allows about "
                    "{3.2g} Hz to {4.2g} Hz"},
-    {"from_beyond", "{1.6g} Hz"},
     {"gaps", "{name}: {0} of {1} segments have missing samples and were left out"},
     {"lines", "{name}: more than {0} lines; the strongest are listed"},
     {"fit", "{name}: the noise parameters could not be fitted: {0t}"},
@@ -743,6 +742,12 @@ static const struct message {
      "{record} has no column {name}: {model} describes {0} {1k} axes, and all of them are needed"},
     {"axes_do_not_match", "{record} has {0} {1k} columns, but {model} describes {2}; name the "
                           "log's columns with --columns, and write - for a column to skip"},
+    {"simulate:temperature_unknown",
+     "the model's temperature terms are left out: add --temperature 25degC or a profile"},
+    {"simulate:no_attitude", "the magnetometer is left out: {record} states rates and forces, but "
+                             "not the attitude in the field"},
+    {"simulate:vibration", "the vibration needs {0} parts per sample, but {1} are the most; its "
+                           "effect is wrong below --rate {2.0f}Hz"},
     {"compensate:no_sensor", "{record} has no gyro and no accel column: name them with --columns"},
     {"sensor_needed", "{record} has no {0k} columns, which {name} of {model} needs"},
     {"not_in_model", "{model} describes no {0p}: the columns are copied as they are"},
@@ -760,6 +765,8 @@ static const struct message {
                  "the model, or add --rate-limit 500deg/s or --force-limit 10g"},
     {"model_refused", "{model}: {0t}"},
     {"not_written", "{0t}"},
+    {"compensate:axes_of_counts", "--axes changes signs, and counts have a zero offset; compensate "
+                                  "first, then use imukit convert --axes"},
     {"compensate:saturated", "saturated, at or beyond the range of an axis" SAMPLES_FIRST},
     {"compensate:temperature", "temperature outside the valid range of the model's terms, so the "
                                "nearer end of the range was used" SAMPLES_FIRST},

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One channel: its response to the motion, its stochastic terms added block by block, and the
- * output stage
+/* One channel: its start, its response to the motion, and the output stage
  *
  *     x -> bandwidth -> + noise -> dead band -> range -> quantization of the integral
  *       -> resolution -> counts.
@@ -12,13 +11,6 @@
 #include "simulate_internal.h"
 
 #include <string.h>
-
-/* Normals drawn in one call: for white noise, a random walk, flicker and two more terms. */
-enum {
-    BATCH_NORMALS = 4 * IMK_NOISE_BLOCK + IMKI_FLICKER_NORMALS,
-    BATCH_PARTS = 2 * IMK_TERMS_MAX,
-    BATCH_DRAWS = BATCH_NORMALS / IMK_NOISE_BLOCK + IMKI_DRAWS_MAX
-};
 
 /* Bytes of the states of a term, a multiple of 64. */
 static size_t states_size(const imki_noise_term *term, imki_axis axis)
@@ -54,18 +46,19 @@ static imk_status start_term(imki_channel_term *made, const imki_noise_term *ter
     imki_term_place place = {axis.triad, axis.axis, 0};
     const imki_generator *generator = imki_term_generator(term, place);
     const int count = imki_term_count(term, &axis.triad->noise);
+    _Alignas(16) unsigned char state[IMKI_STATE_MAX];
     made->generator = generator;
     for (; place.instance < count; place.instance++) {
         if (term->strength(place) == 0.0)
             continue;
         const uint64_t stream =
             imk_stream(run, term->stream, (uint8_t)place.instance, axis.stream_axis);
-        void *state = made->states + made->count++ * generator->state_size;
         const imk_status status = generator->start(state, place, dt, random, stream);
         if (status != IMK_OK) {
             *found = (misfit){generator->field, generator->refused(place)};
             return status;
         }
+        memcpy(made->states + made->count++ * generator->state_size, state, generator->state_size);
     }
     return IMK_OK;
 }
@@ -151,12 +144,8 @@ void imki_limit_band(imki_band_limit *limit, size_t count, double *signal)
         limit->started = true;
     }
     double x = limit->x, v = limit->v;
-    for (size_t i = 0; i < count; i++) {
-        double u = signal[i], away = x - u;
-        signal[i] = u + (limit->mean[0] * away + limit->mean[1] * v);
-        x = u + (limit->phi[0][0] * away + limit->phi[0][1] * v);
-        v = limit->phi[1][0] * away + limit->phi[1][1] * v;
-    }
+    for (size_t i = 0; i < count; i++)
+        signal[i] = imki_band_limited(limit, signal[i], &x, &v);
     limit->x = x;
     limit->v = v;
 }
@@ -255,152 +244,43 @@ void imki_channel_responses(size_t count, imki_channel *const *channels,
             imki_limit_band(&channels[i]->band_limit, rows, out[i]);
 }
 
-/* ---- noise and output ---- */
+/* ---- output ---- */
 
 static void output_stage(imki_channel *channel, double *block)
 {
     double step = channel->resolution;
-    if (channel->dead_band > 0.0 || channel->range > 0.0)
-        imki_saturate(channel->kernel, channel->dead_band,
-                      channel->range > 0.0 ? channel->range : (double)INFINITY, block);
+    if (imki_saturates(channel))
+        imki_saturate(channel->kernel, channel->dead_band, imki_end_of_range(channel), block);
     imki_quantization_block(&channel->quantization, channel->kernel, block);
     if (step > 0.0)
         for (size_t j = 0; j < IMK_NOISE_BLOCK; j++)
-            block[j] = step * imki_round(block[j] / step);
+            block[j] = imki_to_resolution(step, block[j]);
     if (channel->sensitivity != 0.0)
         for (size_t j = 0; j < IMK_NOISE_BLOCK; j++)
-            block[j] = imki_round(channel->sensitivity * block[j] + channel->zero_offset);
+            block[j] = imki_to_counts(channel, block[j]);
 }
 
-/* States of a channel whose normals are drawn in one call. */
-typedef struct batch {
-    struct {
-        const imki_generator *generator;
-        unsigned char *states;
-        size_t count;
-        double *normals;
-    } part[BATCH_PARTS];
-    size_t parts, draws, used;
-    imki_draw draw[BATCH_DRAWS];
-    IMKI_ALIGNED double normals[BATCH_NORMALS];
-} batch;
-
-static void add_batch(const imki_channel *channel, batch *b, double *block)
-{
-    if (b->draws > 0)
-        imki_random_draws(channel->random, b->draw, b->draws);
-    for (size_t i = 0; i < b->parts; i++)
-        b->part[i].generator->blocks(b->part[i].states, b->part[i].count, channel->kernel,
-                                     b->part[i].normals, block);
-    b->parts = b->draws = b->used = 0;
-}
-
-static void put_in_batch(batch *b, const imki_generator *generator, unsigned char *states,
-                         size_t count)
-{
-    b->part[b->parts].generator = generator;
-    b->part[b->parts].states = states;
-    b->part[b->parts].count = count;
-    b->part[b->parts++].normals = b->normals + b->used;
-    for (size_t i = 0; i < count && generator->draws; i++) {
-        b->draws += generator->draws(states + i * generator->state_size, b->normals + b->used,
-                                     b->draw + b->draws);
-        b->used += generator->normals;
-    }
-}
-
-/* The terms first … last - 1 of a channel, one after another. Its memory is on the stack: not while
- * the terms that go across use theirs. */
-static __attribute__((noinline)) void add_terms(imki_channel *channel, int first, int last,
-                                                double *block)
-{
-    batch b;
-    b.parts = b.draws = b.used = 0;
-    for (int t = first; t < last; t++) {
-        const imki_channel_term *term = &channel->term[t];
-        const imki_generator *generator = term->generator;
-        for (size_t i = 0; i < term->count && !generator->across;) {
-            const size_t left = term->count - i;
-            const size_t now = left < generator->together ? left : generator->together;
-            if (b.used + now * generator->normals > BATCH_NORMALS || b.parts == BATCH_PARTS)
-                add_batch(channel, &b, block);
-            put_in_batch(&b, generator, term->states + i * generator->state_size, now);
-            i += now;
-        }
-    }
-    add_batch(channel, &b, block);
-}
-
-/* The deterministic part, and the ramp, in segment order. */
-static void begin_block(imki_channel *channel, bool constant, double *out)
-{
-    IMKI_ALIGNED double samples[IMK_NOISE_BLOCK];
-    if (constant) {
-        for (size_t j = 0; j < IMK_NOISE_BLOCK; j++)
-            out[j] = channel->constant;
-    } else {
-        memcpy(samples, out, sizeof samples);
-        imki_to_segment_order(channel->kernel, samples, out);
-    }
-    if (channel->ramp != 0.0)
-        imki_add_ramp(channel->kernel, channel->ramp, channel->next, out);
-}
-
-static void end_block(imki_channel *channel, double *out)
+/* What the channel is exposed to, and its noise, in time order. */
+static void finish_block(imki_channel *channel, bool constant, const double *noise, double *out)
 {
     IMKI_ALIGNED double block[IMK_NOISE_BLOCK];
-    memcpy(block, out, sizeof block);
+    if (constant)
+        for (size_t j = 0; j < IMK_NOISE_BLOCK; j++)
+            block[j] = channel->constant;
+    else
+        imki_to_segment_order(channel->kernel, out, block);
+    imki_add_scaled(channel->kernel, 1.0, noise, block);
     output_stage(channel, block);
     imki_to_time_order(channel->kernel, block, out);
-    channel->next += IMK_NOISE_BLOCK;
 }
 
-/* State `index` of a term of each channel that has it, where that goes across channels. */
-static void add_across(size_t count, imki_channel *const *channels, int t, size_t index,
-                       double *const *out)
-{
-    void *states[IMKI_CHANNELS];
-    double *blocks[IMKI_CHANNELS] = {NULL};
-    const imki_generator *generator = NULL;
-    size_t present = 0;
-    for (size_t i = 0; i < count; i++) {
-        const imki_channel_term *term = &channels[i]->term[t];
-        if (!term->generator->across || index >= term->count)
-            continue;
-        generator = term->generator;
-        states[present] = term->states + index * generator->state_size;
-        blocks[present++] = out[i];
-    }
-    if (generator)
-        generator->across(states, present, blocks);
-}
-
-/* How many states of a term go across, of the channel that has most of them. */
-static size_t states_across(size_t count, imki_channel *const *channels, int t)
-{
-    size_t most = 0;
-    for (size_t i = 0; i < count; i++)
-        if (channels[i]->term[t].generator->across && channels[i]->term[t].count > most)
-            most = channels[i]->term[t].count;
-    return most;
-}
-
-/* Blocks stand in `out` in segment order until they are finished. */
 void imki_channel_blocks(size_t count, imki_channel *const *channels, bool constant,
                          double *const *out)
 {
+    double *noise[IMKI_CHANNELS] = {NULL};
     for (size_t i = 0; i < count; i++)
-        begin_block(channels[i], constant, out[i]);
-    for (int t = 0, done = 0; t <= IMKI_NOISE_TERMS; t++) {
-        const size_t across = t < IMKI_NOISE_TERMS ? states_across(count, channels, t) : 0;
-        if (across == 0 && t < IMKI_NOISE_TERMS)
-            continue;
-        for (size_t i = 0; i < count && t > done; i++)
-            add_terms(channels[i], done, t, out[i]);
-        for (size_t j = 0; j < across; j++)
-            add_across(count, channels, t, j, out);
-        done = t;
-    }
+        noise[i] = channels[i]->noise;
+    imki_channel_noise(count, channels, noise);
     for (size_t i = 0; i < count; i++)
-        end_block(channels[i], out[i]);
+        finish_block(channels[i], constant, noise[i], out[i]);
 }

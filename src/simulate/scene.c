@@ -14,14 +14,6 @@
 
 #include <string.h>
 
-static bool has(const imk_triad *triad, const imk_axes *numbers)
-{
-    for (int i = 0; triad->present && i < triad->axis_count; i++)
-        if (numbers->value[i] != 0.0)
-            return true;
-    return false;
-}
-
 static bool moves(const imk_simulation *simulation)
 {
     return simulation->motion.recorded || simulation->motion.trajectory;
@@ -52,8 +44,10 @@ size_t imki_substeps(const imk_model *model, const imk_simulation *simulation)
     if (substeps > 0 || simulation->motion.recorded || !moves(simulation))
         return substeps > 0 ? substeps : 1;
     substeps = imk_trajectory_substeps(simulation->motion.trajectory, 1.0 / simulation->rate);
-    const bool magnetic = has_field(simulation) && has(&model->mag, &model->mag.bandwidth);
-    if ((has(gyro, &gyro->bandwidth) || has(accel, &accel->bandwidth) || magnetic) &&
+    const bool magnetic =
+        has_field(simulation) && imki_triad_has(&model->mag, &model->mag.bandwidth);
+    if ((imki_triad_has(gyro, &gyro->bandwidth) || imki_triad_has(accel, &accel->bandwidth) ||
+         magnetic) &&
         substeps < FILTERED)
         substeps = FILTERED;
     return substeps < IMK_SUBSTEPS_MAX ? substeps : IMK_SUBSTEPS_MAX;
@@ -62,9 +56,10 @@ size_t imki_substeps(const imk_model *model, const imk_simulation *simulation)
 bool imki_scene_varies(const imk_model *model, const imk_simulation *simulation)
 {
     return moves(simulation) || simulation->temperature ||
-           has(&model->gyro, &model->gyro.bias.warm_up_amplitude) ||
-           has(&model->accel, &model->accel.bias.warm_up_amplitude) ||
-           (has_field(simulation) && has(&model->mag, &model->mag.bias.warm_up_amplitude));
+           imki_triad_has(&model->gyro, &model->gyro.bias.warm_up_amplitude) ||
+           imki_triad_has(&model->accel, &model->accel.bias.warm_up_amplitude) ||
+           (has_field(simulation) &&
+            imki_triad_has(&model->mag, &model->mag.bias.warm_up_amplitude));
 }
 
 /* ---- start ---- */
@@ -194,7 +189,7 @@ static imk_stimulus magnetic_stimulus(const imki_scene *e, double *const *column
 
 static void start_triad(imki_scene *e, const imk_triad *triad, int sensor)
 {
-    e->warm_up_present[sensor] = has(triad, &triad->bias.warm_up_amplitude);
+    e->warm_up_present[sensor] = imki_triad_has(triad, &triad->bias.warm_up_amplitude);
     e->warm_up_time[sensor] = triad->bias.warm_up_time.value;
     e->same_warm_up =
         e->warm_up_present[0] && e->warm_up_present[1] && e->warm_up_time[0] == e->warm_up_time[1];
@@ -202,8 +197,8 @@ static void start_triad(imki_scene *e, const imk_triad *triad, int sensor)
     const bool needs_table = e->warm_up_present[sensor] && (!e->same_warm_up || sensor == IMK_MAG);
     for (size_t i = 0; needs_table && i < IMK_NOISE_BLOCK; i++)
         e->warm_up_table[(size_t)sensor * IMK_NOISE_BLOCK + i] =
-            imk_exp(-((double)i * part) / e->warm_up_time[sensor]);
-    e->hysteresis_present[sensor] = has(triad, &triad->bias.hysteresis);
+            imki_warm_up_within(i, part, e->warm_up_time[sensor]);
+    e->hysteresis_present[sensor] = imki_triad_has(triad, &triad->bias.hysteresis);
     e->hysteresis[sensor] = imk_hysteresis_start(triad);
 }
 
@@ -417,8 +412,7 @@ static void fill_temperature(imki_scene *e, uint64_t first, size_t count)
                                 e->column[IMKI_HYSTERESIS + sensor]);
 }
 
-/* e^(-t/time) in the middle of each part: anchored at multiples of 512 parts, so that one
- * exponential serves 512. */
+/* Anchored at multiples of 512 parts. */
 static void fill_warm_up(imki_scene *e, int sensor, uint64_t first, size_t count)
 {
     const double part = e->interval / (double)e->substeps;
@@ -426,8 +420,8 @@ static void fill_warm_up(imki_scene *e, int sensor, uint64_t first, size_t count
     double *out = e->column[IMKI_WARM_UP + sensor];
     for (size_t i = 0; i < count;) {
         size_t within = (size_t)((first + i) % IMK_NOISE_BLOCK);
-        double anchor = (double)(first + i - within) + 0.5 - (double)e->substeps;
-        double begin = imk_exp(-(anchor * part) / e->warm_up_time[sensor]);
+        double begin =
+            imki_warm_up_block(first + i - within, e->substeps, part, e->warm_up_time[sensor]);
         for (; within < IMK_NOISE_BLOCK && i < count; within++, i++)
             out[i] = begin * table[within];
     }

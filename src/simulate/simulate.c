@@ -15,12 +15,13 @@ struct imk_simulator {
     imki_scene scene;
     imk_distortion distortion, magnetic; /* the magnetometer's: as accelerometers of its own */
     imk_random random;
-    uint64_t drop_stream;
+    uint32_t run;
     double drops;
     uint64_t next; /* first row of the block to be made next */
     size_t left;   /* rows of the channels' blocks not yet handed out */
     size_t channels;
     imki_channel *channel;
+    double *held; /* a block of each channel, not yet handed out completely */
 };
 
 imk_simulation imk_simulation_default(void)
@@ -61,31 +62,12 @@ static imk_status check_simulation(const imk_simulation *simulation, imk_error *
     return IMK_OK;
 }
 
-static size_t axes_of(const imk_triad *triad)
-{
-    return triad->present ? (size_t)triad->axis_count : 0;
-}
-
-static imki_axis axis_of(const imk_model *model, size_t channel)
-{
-    static const char *const names[IMK_KINDS] = {"gyro", "accel", "mag"};
-    imki_axis axis = {.kind = NULL};
-    for (int kind = 0; kind < IMK_KINDS; kind++) {
-        const imk_triad *triad = imk_model_triad(model, kind);
-        axis = (imki_axis){triad, names[kind],  kind == IMK_GYRO ? IMK_GYRO : IMK_ACCEL,
-                           kind,  (int)channel, (uint8_t)(channel + (size_t)kind * IMK_AXES_MAX)};
-        if (channel < axes_of(triad))
-            break;
-        channel -= axes_of(triad);
-    }
-    return axis;
-}
-
 static size_t channels_of(const imk_model *model, const imk_simulation *simulation)
 {
     const double *field = simulation->field;
     const bool magnetic = field[0] != 0.0 || field[1] != 0.0 || field[2] != 0.0;
-    return axes_of(&model->gyro) + axes_of(&model->accel) + (magnetic ? axes_of(&model->mag) : 0);
+    return imki_axes_of(&model->gyro) + imki_axes_of(&model->accel) +
+           (magnetic ? imki_axes_of(&model->mag) : 0);
 }
 
 void imk_dipole_field(double latitude, double field[3])
@@ -102,11 +84,12 @@ size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulati
     imki_parts parts = {NULL, 0};
     size_t states = 0;
     for (size_t i = 0; i < count; i++) {
-        const imki_axis axis = axis_of(model, i);
+        const imki_axis axis = imki_axis_of(model, i);
         states += imki_channel_memory(axis);
     }
     imki_take(&parts, states);
     imki_take(&parts, count * sizeof(imki_channel));
+    imki_take(&parts, 2 * count * IMK_NOISE_BLOCK * sizeof(double));
     imki_take(&parts, sizeof(imk_simulator));
     if (imki_scene_varies(model, simulation))
         imki_take(&parts, IMKI_SCENE_SIZE);
@@ -115,28 +98,15 @@ size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulati
 
 /* ---- start ---- */
 
-/* One draw of bias and of scale factor for the whole run. */
-static void draw_constants(imki_axis axis, imk_random random, uint32_t run,
-                           imk_run_constants *constants)
-{
-    const imk_axes *sigma[2] = {&axis.triad->bias.repeatability,
-                                &axis.triad->scale_factor.repeatability};
-    double normal[2];
-    for (uint8_t i = 0; i < 2; i++)
-        imk_random_normals(random, imk_stream(run, IMK_TERM_REPEATABILITY, i, axis.stream_axis), 0,
-                           1, &normal[i]);
-    constants->bias[axis.sensor][axis.axis] = sigma[0]->value[axis.axis] * normal[0];
-    constants->scale_factor[axis.sensor][axis.axis] = sigma[1]->value[axis.axis] * normal[1];
-}
-
 static imk_status start_distortion(imk_simulator *made, const imk_model *model,
                                    const imk_simulation *simulation, imk_error *error)
 {
     imk_run_constants constants = {.bias = {{0.0}}}, magnetic = {.bias = {{0.0}}};
     for (size_t i = 0; i < made->channels; i++) {
-        const imki_axis axis = axis_of(model, i);
-        draw_constants(axis, made->random, simulation->run,
-                       axis.stimulus == IMK_MAG ? &magnetic : &constants);
+        const imki_axis axis = imki_axis_of(model, i);
+        imk_run_constants *of = axis.stimulus == IMK_MAG ? &magnetic : &constants;
+        imki_draw_constants(axis, made->random, simulation->run, &of->bias[axis.sensor][axis.axis],
+                            &of->scale_factor[axis.sensor][axis.axis]);
     }
     const imk_status status =
         imk_distortion_start(&made->distortion, model, &constants, made->random.kernel, error);
@@ -175,7 +145,7 @@ static imk_status start_channels(imk_simulator *made, imki_parts *memory, const 
                                  const imk_simulation *simulation, imk_error *error)
 {
     for (size_t i = 0; i < made->channels; i++) {
-        imki_axis axis = axis_of(model, i);
+        imki_axis axis = imki_axis_of(model, i);
         imki_channel *channel = &made->channel[i];
         imk_status status =
             imki_channel_start(channel, axis, 1.0 / simulation->rate, made->scene.substeps,
@@ -206,10 +176,14 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
     const size_t channels = channels_of(model, simulation);
     imk_simulator *made = imki_take(&rest, sizeof *made);
     imki_channel *channel = imki_take(&rest, channels * sizeof *channel);
+    double *blocks = imki_take(&rest, 2 * channels * IMK_NOISE_BLOCK * sizeof(double));
     memset(rest.memory, 0, rest.used);
+    for (size_t i = 0; i < channels; i++)
+        channel[i].noise = blocks + (channels + i) * IMK_NOISE_BLOCK;
+    made->held = blocks;
     made->random = imk_random_seeded(simulation->seed);
     made->drops = model->timing.drops.value;
-    made->drop_stream = imk_stream(simulation->run, IMK_TERM_DROPS, 0, 0);
+    made->run = simulation->run;
     made->channels = channels;
     made->channel = channel;
     status = imki_scene_start(&made->scene, model, simulation, checked, &rest, error);
@@ -241,11 +215,7 @@ double imk_simulator_true_time(const imk_simulator *simulator, int64_t row)
 
 bool imk_simulator_dropped(const imk_simulator *simulator, uint64_t row)
 {
-    uint32_t word;
-    if (!(simulator->drops > 0.0))
-        return false;
-    imk_random_words(simulator->random, simulator->drop_stream, row, 1, &word);
-    return (double)word < simulator->drops * 0x1p32;
+    return imki_row_dropped(simulator->random, simulator->run, simulator->drops, row);
 }
 
 /* ---- rows ---- */
@@ -332,7 +302,7 @@ static size_t hand_out(imk_simulator *simulator, size_t channels, size_t count, 
 {
     size_t now = count < simulator->left ? count : simulator->left;
     for (size_t i = 0; i < channels; i++)
-        memcpy(out[i], simulator->channel[i].sample + IMK_NOISE_BLOCK - simulator->left,
+        memcpy(out[i], simulator->held + (i + 1) * IMK_NOISE_BLOCK - simulator->left,
                now * sizeof(double));
     simulator->left -= now;
     return now;
@@ -351,7 +321,7 @@ void imk_simulator_next(imk_simulator *simulator, size_t count, double *const *c
     const size_t channels = simulator->channels;
     for (size_t i = 0; i < channels; i++) {
         out[i] = columns[i];
-        held[i] = simulator->channel[i].sample;
+        held[i] = simulator->held + i * IMK_NOISE_BLOCK;
     }
     size_t done = hand_out(simulator, channels, count, out);
     advance(out, channels, done);

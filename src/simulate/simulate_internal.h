@@ -74,6 +74,19 @@ bool imki_scenes_agree(const imki_scene *a, const imki_scene *b);
 /* Make the rows first … first + rows - 1, rows * substeps <= IMKI_STRETCH. Stretches follow one
  * another. */
 void imki_scene_fill(imki_scene *scene, uint64_t first, size_t rows, const imk_executor *executor);
+/* e^(-t/time) in the middle of part `within` of the block of 512 parts that begins with number
+ * `first`, of a row's `parts` of this length, is the product of these: one exponential serves 512.
+ */
+static inline double imki_warm_up_block(uint64_t first, size_t parts, double part, double time)
+{
+    const double anchor = (double)first + 0.5 - (double)parts;
+    return imk_exp(-(anchor * part) / time);
+}
+
+static inline double imki_warm_up_within(size_t within, double part, double time)
+{
+    return imk_exp(-((double)within * part) / time);
+}
 /* The field in body axes at an instant. */
 void imki_field_at(const imki_scene *scene, double time, double field[3]);
 /* True time at the end of a row, from the start of the motion. */
@@ -101,6 +114,15 @@ typedef struct imki_band_limit {
     double x, v;
 } imki_band_limit;
 
+/* The mean of x over a part with the input u, whose state is carried. */
+static inline double imki_band_limited(const imki_band_limit *limit, double u, double *x, double *v)
+{
+    const double away = *x - u, speed = *v;
+    *x = u + (limit->phi[0][0] * away + limit->phi[0][1] * speed);
+    *v = limit->phi[1][0] * away + limit->phi[1][1] * speed;
+    return u + (limit->mean[0] * away + limit->mean[1] * speed);
+}
+
 /* Of an axis, over parts of this length; not present where it has no bandwidth. */
 imk_status imki_band_limit_start(imki_band_limit *limit, const imk_triad *triad, int axis,
                                  double part);
@@ -123,8 +145,29 @@ typedef struct imki_channel {
     imki_band_limit band_limit;
     imki_channel_term term[IMKI_NOISE_TERMS];
     imk_quantization_state quantization;
-    double sample[IMK_NOISE_BLOCK]; /* a block not yet handed out completely */
+    double *noise; /* a block, where the simulator has the room for it */
 } imki_channel;
+
+/* The output stage of one sample; the quantization of the integral comes before the resolution. */
+static inline bool imki_saturates(const imki_channel *channel)
+{
+    return channel->dead_band > 0.0 || channel->range > 0.0;
+}
+
+static inline double imki_end_of_range(const imki_channel *channel)
+{
+    return channel->range > 0.0 ? channel->range : (double)INFINITY;
+}
+
+static inline double imki_to_resolution(double step, double x)
+{
+    return step * imki_round(x / step);
+}
+
+static inline double imki_to_counts(const imki_channel *channel, double x)
+{
+    return imki_round(channel->sensitivity * x + channel->zero_offset);
+}
 
 /* Bytes of the states of the stochastic terms, a multiple of 64. */
 size_t imki_channel_memory(imki_axis axis);
@@ -148,13 +191,33 @@ void imki_channel_responses(size_t count, imki_channel *const *channels,
 
 enum { IMKI_CHANNELS = IMK_KINDS * IMK_AXES_MAX };
 
-/* Noise and output stage of the next 512 samples of several channels of one unit: together, because
- * some terms wait for their own sums and others can be computed meanwhile.
- * @param count     <= IMKI_CHANNELS
+/* Noise and output stage of the next 512 samples of several channels of one unit.
+ * @param count     <= IMKI_CHANNELS; each has room for its noise
  * @param constant  true: the deterministic part is channel->constant; false: it stands in out
  * @param out       in time order, one of each channel */
 void imki_channel_blocks(size_t count, imki_channel *const *channels, bool constant,
                          double *const *out);
+
+/* ---- channel_noise.c ---- */
+
+/* The noise of the next 512 samples of several channels of one seed: together, because some terms
+ * wait for their own sums and others can be computed meanwhile.
+ * @param count  <= IMKI_CHANNELS
+ * @param noise  in segment order, one of each channel */
+void imki_channel_noise(size_t count, imki_channel *const *channels, double *const *noise);
+
+/* ---- unit.c: the axes of a unit ---- */
+
+size_t imki_axes_of(const imk_triad *triad);
+/* True when a number of one of its axes is not 0. */
+bool imki_triad_has(const imk_triad *triad, const imk_axes *numbers);
+/* The axis of a channel: gyros first, then accelerometers, then a magnetometer. */
+imki_axis imki_axis_of(const imk_model *model, size_t channel);
+/* Bias and scale factor of an axis that this run has beside those of the model. */
+void imki_draw_constants(imki_axis axis, imk_random random, uint32_t run, double *bias,
+                         double *scale_factor);
+/* True when the row with this number is lost, of a run with this probability of it. */
+bool imki_row_dropped(imk_random random, uint32_t run, double probability, uint64_t row);
 
 /* ---- simulate.c: many runs of one motion ---- */
 

@@ -287,13 +287,15 @@ static void test_json(void **state)
 {
     (void)state;
     json_error_t error;
-    assert_int_equal(run("$I convert " CORPUS "matlab.json' out.yaml --json 2>/dev/null"), 0);
+    assert_int_equal(
+        run("$I convert " CORPUS "gnss_ins_sim.json' out.yaml --rate 100Hz --json 2>/dev/null"), 0);
     json_t *root = json_loads(out, 0, &error);
     assert_non_null(root);
     json_t *result = json_object_get(root, "result");
     assert_string_equal(json_string_value(json_object_get(result, "format")), "model");
     assert_string_equal(
-        json_string_value(json_object_get(json_object_get(root, "inputs"), "format")), "matlab");
+        json_string_value(json_object_get(json_object_get(root, "inputs"), "format")),
+        "gnss-ins-sim");
     json_t *notes = json_object_get(result, "notes");
     bool assumed = false, lost = false;
     for (size_t i = 0; i < json_array_size(notes); i++) {
@@ -302,7 +304,7 @@ static void test_json(void **state)
         lost = lost || strcmp(kind, "lost") == 0;
     }
     assert_true(assumed && lost);
-    assert_true(json_array_size(json_object_get(root, "warnings")) > 0);
+    assert_true(json_array_size(json_object_get(root, "findings")) > 0);
     json_decref(root);
     sweep();
 }

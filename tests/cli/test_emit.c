@@ -148,7 +148,7 @@ static void test_messages(void **state)
     assert_string_equal(json_string_value(json_array_get(json_object_get(result, "files"), 1)),
                         "./unit.c");
     assert_int_equal(json_array_size(json_object_get(result, "taken_out")), 2);
-    assert_int_equal(json_array_size(json_object_get(document, "warnings")), 2);
+    assert_int_equal(json_array_size(json_object_get(document, "findings")), 2);
     assert_int_equal(
         json_integer_value(json_object_get(json_object_get(result, "cost"), "additions")), 6);
     json_decref(document);

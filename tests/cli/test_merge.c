@@ -86,7 +86,7 @@ static void what_is_wrong_is_named(void **state)
     assert_int_equal(json_integer_value(json_object_get(result, "runs")), 60);
     assert_string_equal(json_string_value(json_object_get(result, "missing_shards")), "2-3,7,10");
     assert_int_equal(json_array_size(json_object_get(result, "left_out")), 3);
-    assert_int_equal(json_array_size(json_object_get(document, "warnings")), 4);
+    assert_int_equal(json_array_size(json_object_get(document, "findings")), 4);
     json_decref(document);
     /* The advice, followed. */
     assert_int_equal(run("for i in 2 3 7 10; do " DRIFT "--shard $i/10 -o new$i.h5; done"), 0);

@@ -242,7 +242,7 @@ static void test_identify_json(void **state)
                                  "s:[{s:s}]}",
                                  "imukit", &version, "command", &verb, "inputs", "rows", &(int){0},
                                  "result", "channels", "name", &name, "terms", "angle_random_walk",
-                                 "value", &value, "unit", &unit, "warnings", "code", &code),
+                                 "value", &value, "unit", &unit, "findings", "code", &code),
                      0);
     assert_string_equal(version, IMK_VERSION);
     assert_string_equal(verb, "identify");

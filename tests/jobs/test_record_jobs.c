@@ -287,12 +287,42 @@ static void test_units_of_arrays(void **state)
                  IMK_ERROR_UNIT_UNKNOWN);
 }
 
+/* Columns of a matrix that is stored row by row, and a column backwards. */
+static void test_strides(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"gyro_x [deg/s]", "gyro_y", "gyro_z"};
+    enum { COUNT = 4 };
+    const double rows[COUNT][2] = {{1, 10}, {2, 20}, {3, (double)NAN}, {4, 40}};
+    const double *const data[] = {&rows[0][0], &rows[0][1], &rows[COUNT - 1][0]};
+    const ptrdiff_t strides[] = {2, 2, -2};
+    double x[COUNT], y[COUNT], z[COUNT], *const columns[] = {x, y, z};
+    imk_array_source memory;
+    imk_record_source source;
+    imk_error error;
+    size_t read;
+    CHECK_OK(
+        imk_array_source_strided(3, names, data, strides, COUNT, 100, &memory, &source, &error));
+    CHECK_OK(source.read(source.context, COUNT, columns, &read, &error));
+    assert_int_equal(read, COUNT);
+    for (int k = 0; k < COUNT; k++) {
+        assert_true(fabs(x[k] - (k + 1) * 3.14159265358979323846 / 180) < 1e-15);
+        assert_true(z[k] == COUNT - k);
+        if (k != 2)
+            assert_true(y[k] == 10 * (k + 1));
+    }
+    const imk_log_findings findings = source.findings(source.context);
+    assert_int_equal(findings.not_finite, 1);
+    assert_int_equal(findings.first_not_finite, 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_units_of_arrays), cmocka_unit_test(test_arrays_are_a_log),
         cmocka_unit_test(test_what_is_missing), cmocka_unit_test(test_given_up),
         cmocka_unit_test(test_failing_memory),  cmocka_unit_test(test_wrong_arrays),
+        cmocka_unit_test(test_strides),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -269,3 +269,12 @@ sed -n '1,11p' levels.csv >single_sweep.csv
 sed 's/reading/reding/' levels.csv >wrong_table.csv
 awk 'BEGIN { print "reference [g],reading_x [g],reading_y [mg]"; for (k = 0; k < 40; k++) {
     x = (k % 8 - 3.5) / 4; printf "%g,%.6f,%.4f\n", x, 1.002 * x + 1e-4 * (k % 3), 1001 * x + 0.2 * (k % 5) } }' >accel_table.csv
+
+# ---- what only few verbs read ----------------------------------------------------------------------
+$IMUKIT simulate unit.yaml --motion lap.yaml --rate 50Hz --seed 2 --aid "position 1 1 2 m, velocity 0.05 m/s" --aid-output lap_aids.csv -o lap_again.csv
+$IMUKIT convert rest.csv rest.mcap
+awk 'BEGIN { print "pose,accel_x [m/s^2],accel_y [m/s^2],accel_z [m/s^2],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],accel_x_std [m/s^2],accel_y_std [m/s^2],accel_z_std [m/s^2],samples"
+    split("x_up x_down y_up y_down z_up z_down", name, " ")
+    for (k = 0; k < 12; k++) {
+        axis = int(k % 6 / 2); f[0] = 0.2; f[1] = -0.3; f[2] = 0.1; f[axis] += k % 2 ? -9.80743 : 9.80743
+        printf "%s,%.5f,%.5f,%.5f,0.1,0.0,0.0,0.005,0.005,0.005,100\n", name[k % 6 + 1], f[0] + 1e-3 * sin(k * k), f[1] + 1e-3 * cos(k * k), f[2] + 1e-3 * sin(3 * k) } }' >faces.csv

@@ -69,7 +69,8 @@ void imki_allan_modified_block(imki_allan_cursor *c, imk_kernel kernel, const do
 void imki_allan_parabolic_block(imki_allan_cursor *c, imk_kernel kernel, const double *sums,
                                 size_t first, size_t size);
 
-/* allan_total.c: squares of the n - 1 - (n - 2m + 1) terms that reach beyond the record's ends. */
+/* allan_total.c: squares of the terms that reach beyond the record's ends, 2 (m - 1) up to m = n/2
+ * and n - 1 beyond. */
 double imki_allan_total_ends(size_t n, const double *sums, size_t m);
 
 /* allan_total_windows.c: the variances MTOT (or HTOT) from reflected stretches. */

@@ -103,8 +103,8 @@ static size_t term_count(imk_allan_statistic statistic, size_t n, size_t m)
         return n - 3 * m + 2;
     case IMK_ALLAN_PARABOLIC:
         return m == 1 ? n - 1 : n - 2 * m + 2;
-    default:
-        return n - 2 * m + 1;
+    default: /* TOTDEV beyond n/2: every term reaches beyond the record */
+        return 2 * m > n ? 0 : n - 2 * m + 1;
     }
 }
 
@@ -218,6 +218,7 @@ static size_t scratch_doubles(imk_allan_statistic statistic, size_t n, size_t fa
     return (most + 7) / 8 * 8;
 }
 
+/* Factors for which the variance is defined: for TOTDEV and Theo1 more than are good for use. */
 static imk_status check_factors(imk_allan_statistic statistic, size_t n, size_t factor_count,
                                 const size_t *factors)
 {
@@ -225,6 +226,10 @@ static imk_status check_factors(imk_allan_statistic statistic, size_t n, size_t 
     if ((unsigned)statistic >= IMK_ALLAN_STATISTICS)
         return IMK_ERROR_ARGUMENT;
     imk_allan_range(statistic, n, &lowest, &highest, &step);
+    if (statistic == IMK_ALLAN_TOTAL && n >= 2)
+        highest = n;
+    if (statistic == IMK_ALLAN_THEO1)
+        lowest = step;
     for (size_t i = 0; i < factor_count; i++)
         if (factors[i] < lowest || factors[i] > highest || factors[i] % step != 0)
             return highest < lowest ? IMK_ERROR_TOO_SHORT : IMK_ERROR_RANGE;

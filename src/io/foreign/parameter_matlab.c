@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* MATLAB's imuSensor: the JSON file that loadparams() reads, one object per part with Gyroscope and
- * Accelerometer objects of gyroparams and accelparams.
+/* MATLAB's imuSensor: the JSON file that loadparams() reads, one object per part with Gyroscope,
+ * Accelerometer and Magnetometer objects of gyroparams, accelparams and magparams.
  *
  * imuSensor computes, with fs the sample rate and B = fs/2 for NoiseType double-sided (its default)
  * or fs for single-sided:
@@ -8,16 +8,30 @@
  *     reading = (1 + (T - 25) TemperatureScaleFactor/100) (AxesMisalignment/100 v + ConstantBias
  *               + (T - 25) TemperatureBias + AccelerationBias a + noise)
  *     white noise: sigma = NoiseDensity sqrt(B),   random walk: step RandomWalk/sqrt(B)
+ *     bias instability: filter(Numerator, Denominator, BiasInstability randn)
  *
  * so that N = NoiseDensity/sqrt(2) and K = sqrt(2) RandomWalk when double-sided, N = NoiseDensity
- * and K = RandomWalk when single-sided: its names are the other way round than one would think. */
+ * and K = RandomWalk when single-sided: its names are the other way round than one would think.
+ *
+ * loadparams() takes numbers and "Inf" of a sensor and refuses all else. Objects of a part that are
+ * no sensors it leaves aside: there the coefficients of the filter are written. */
+#include "matlab_flicker_internal.h"
 #include "parameter_internal.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static const char *const sensor_names[2] = {"Gyroscope", "Accelerometer"};
+/* Of IMK_GYRO, IMK_ACCEL and IMK_MAG. */
+static const char *const sensor_names[3] = {"Gyroscope", "Accelerometer", "Magnetometer"};
+static const imki_unit units[3] = {{"rad/s", 1}, {"m/s^2", 1}, {"uT", 1e-6}};
+static const char filter_name[] = "BiasInstabilityFilter";
+
+/* A magnetometer has no limits of its own. */
+static imki_quantity quantity_of(int kind, imki_quantity quantity)
+{
+    return kind == IMK_MAG ? IMKI_PLAIN : quantity;
+}
 
 static const char *const keys[] = {"MeasurementRange",
                                    "Resolution",
@@ -31,7 +45,7 @@ static const char *const keys[] = {"MeasurementRange",
                                    "AccelerationBias",
                                    "TemperatureScaleFactor",
                                    "BiasInstabilityCoefficients"};
-enum { KEYS = sizeof keys / sizeof keys[0] };
+enum { KEYS = sizeof keys / sizeof keys[0], SHORTEST_RANGE = 10 };
 
 /* 25 degC, at which temperature terms vanish, and the range MATLAB does not state: that of
  * industrial parts. */
@@ -102,7 +116,7 @@ static void set_linear(imk_temperature_polynomial *polynomial, const double slop
 static void read_temperature(imki_parameters *p, int sensor, int kind, imk_triad *triad)
 {
     double bias[3] = {0}, scale[3] = {0};
-    imki_node_accept(p, sensor, "TemperatureBias", kind, IMKI_PLAIN, (imki_unit){"", 1}, bias);
+    imki_node_accept(p, sensor, "TemperatureBias", kind, IMKI_PLAIN, units[kind], bias);
     imki_node_accept(p, sensor, "TemperatureScaleFactor", kind, IMKI_PLAIN,
                      (imki_unit){"%/degC", 0.01}, scale);
     set_linear(&triad->bias.temperature, bias);
@@ -136,28 +150,30 @@ static void read_output(imki_parameters *p, int sensor, int kind, imk_triad *tri
     const int node = imki_node_value(p, sensor, "MeasurementRange");
     if (node != IMKI_NONE)
         imki_node_numbers(p, node, 3, range);
-    imki_node_accept(p, sensor, "Resolution", kind, IMKI_PLAIN,
-                     (imki_unit){imki_kind_units[kind], 1}, triad->resolution.value);
+    imki_node_accept(p, sensor, "Resolution", kind, IMKI_PLAIN, units[kind],
+                     triad->resolution.value);
     for (int i = 0; i < 3; i++) {
         if (!(range[i] > 0))
             imki_refuse_node(p, node, IMK_ERROR_RANGE, imki_node_text(p, node), "a positive range");
-        triad->range.value[i] = isinf(range[i]) ? 0 : range[i];
+        triad->range.value[i] = isinf(range[i]) ? 0 : range[i] * units[kind].scale;
     }
 }
 
 static void read_noise(imki_parameters *p, int sensor, int kind, imk_triad *triad)
 {
-    static const char *const white[2] = {"rad/s/sqrt(Hz)", "m/s^2/sqrt(Hz)"};
-    static const char *const walk[2] = {"rad/s*sqrt(Hz)", "m/s^2*sqrt(Hz)"};
-    const imki_unit unit = {imki_kind_units[kind], 1};
+    static const char *const white[3] = {"rad/s/sqrt(Hz)", "m/s^2/sqrt(Hz)", "uT/sqrt(Hz)"};
+    static const char *const walk[3] = {"rad/s*sqrt(Hz)", "m/s^2*sqrt(Hz)", "uT*sqrt(Hz)"};
+    const double unit = units[kind].scale;
     const noise_scale scale = read_noise_type(p, sensor);
-    imki_node_accept(p, sensor, "ConstantBias", kind, IMKI_BIAS, unit, triad->bias.fixed.value);
-    imki_node_accept(p, sensor, "NoiseDensity", kind, IMKI_WHITE,
-                     (imki_unit){white[kind], scale.white}, triad->noise.white.value);
-    imki_node_accept(p, sensor, "BiasInstability", kind, IMKI_DRIFT, unit,
+    imki_node_accept(p, sensor, "ConstantBias", kind, quantity_of(kind, IMKI_BIAS), units[kind],
+                     triad->bias.fixed.value);
+    imki_node_accept(p, sensor, "NoiseDensity", kind, quantity_of(kind, IMKI_WHITE),
+                     (imki_unit){white[kind], scale.white * unit}, triad->noise.white.value);
+    imki_node_accept(p, sensor, "BiasInstability", kind, quantity_of(kind, IMKI_DRIFT), units[kind],
                      triad->noise.bias_instability.value);
-    imki_node_accept(p, sensor, "RandomWalk", kind, IMKI_RANDOM_WALK,
-                     (imki_unit){walk[kind], scale.random_walk}, triad->noise.random_walk.value);
+    imki_node_accept(p, sensor, "RandomWalk", kind, quantity_of(kind, IMKI_RANDOM_WALK),
+                     (imki_unit){walk[kind], scale.random_walk * unit},
+                     triad->noise.random_walk.value);
     if (imki_any(triad->noise.bias_instability.value))
         imki_note(p, false,
                   "BiasInstability is taken as B (the Allan floor is 0.664 B); what MATLAB "
@@ -167,7 +183,7 @@ static void read_noise(imki_parameters *p, int sensor, int kind, imk_triad *tria
 static void read_sensor(imki_parameters *p, int part, int kind)
 {
     const int sensor = imki_node_value(p, part, sensor_names[kind]);
-    imk_triad *triad = p->triad[kind];
+    imk_triad *triad = imk_model_triad_to_set(p->model, kind);
     triad->present = sensor != IMKI_NONE;
     if (!triad->present)
         return;
@@ -187,8 +203,10 @@ static void read_sensor(imki_parameters *p, int part, int kind)
 
 static bool is_part(const imki_parameters *p, int node)
 {
-    return imki_node_value(p, node, sensor_names[0]) != IMKI_NONE ||
-           imki_node_value(p, node, sensor_names[1]) != IMKI_NONE;
+    bool any = false;
+    for (int kind = 0; kind < IMK_KINDS; kind++)
+        any = any || imki_node_value(p, node, sensor_names[kind]) != IMKI_NONE;
+    return any;
 }
 
 /* The part of settings->sensor, or the only one; the root itself may be one. */
@@ -202,7 +220,7 @@ static int find_part(imki_parameters *p)
             imki_choice_add(p, &choice, p->document->node[key].text, p->document->node[key].next);
     if (choice.count == 0)
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "sensor", "Gyroscope",
-                              "a part with a Gyroscope or an Accelerometer");
+                              "a part with a Gyroscope, an Accelerometer or a Magnetometer");
     imki_choice_end(p, choice.found, choice.names, "NAME", "the file has several parts");
     return choice.chosen;
 }
@@ -214,10 +232,8 @@ void imki_matlab_read(imki_parameters *p)
     const int part = find_part(p), key = p->document->node[part].key;
     if (key != IMKI_NONE)
         snprintf(p->model->name, sizeof p->model->name, "%.90s", p->document->node[key].text);
-    for (int kind = 0; kind < 2; kind++)
+    for (int kind = 0; kind < IMK_KINDS; kind++)
         read_sensor(p, part, kind);
-    if (imki_node_value(p, part, "Magnetometer") != IMKI_NONE)
-        imki_note(p, true, "Magnetometer is not read: a model has none");
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -231,7 +247,7 @@ static void write_vector(imki_parameters *p, const char *key, const double value
 }
 
 /* One number for all axes: the smallest range, the coarsest resolution. */
-static void write_output(imki_parameters *p, const imk_triad *triad)
+static void write_output(imki_parameters *p, const imk_triad *triad, double unit)
 {
     double range = 0, resolution = 0;
     for (int i = 0; i < 3; i++) {
@@ -240,20 +256,14 @@ static void write_output(imki_parameters *p, const imk_triad *triad)
         resolution = fmax(resolution, triad->resolution.value[i]);
     }
     imki_text_add(&p->out, "      \"MeasurementRange\": %s,\n      \"Resolution\": %s,\n",
-                  range > 0 ? imki_shortest(range).text : "\"Inf\"",
-                  imki_shortest(resolution).text);
+                  range > 0 ? imki_shortest(range / unit).text : "\"Inf\"",
+                  imki_shortest(resolution / unit).text);
 }
 
-static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad, bool is_last)
+static void write_response(imki_parameters *p, const imk_triad *triad)
 {
-    static const double none[3] = {0};
-    double response[3][3], diagonal[3];
-    const imk_temperature_polynomial *bias = &triad->bias.temperature,
-                                     *scale = &triad->scale_factor.temperature;
+    double response[3][3];
     imki_response_of(triad, response);
-    imki_text_add(&p->out, "    \"%s\": {\n", sensor_names[kind]);
-    write_output(p, triad);
-    write_vector(p, "ConstantBias", triad->bias.fixed.value, 1);
     imki_text_add(&p->out, "      \"AxesMisalignment\": [");
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
@@ -261,19 +271,28 @@ static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad, b
         imki_text_vector(&p->out, response[i]);
         imki_text_add(&p->out, i < 2 ? ", " : "],\n");
     }
-    /* loadparams() takes no text but "Inf", so that NoiseType stays double-sided. */
-    bool single = p->settings->density == IMK_DENSITY_TWO_SIDED;
-    write_vector(p, "NoiseDensity", triad->noise.white.value, single ? 1 : sqrt(2.0));
-    write_vector(p, "BiasInstability", triad->noise.bias_instability.value, 1);
-    write_vector(p, "RandomWalk", triad->noise.random_walk.value, single ? 1 : sqrt(0.5));
+}
+
+/* loadparams() takes no text but "Inf", so that NoiseType stays double-sided. */
+static void write_noise(imki_parameters *p, const imk_triad *triad, double per_unit)
+{
+    const bool single = p->settings->density == IMK_DENSITY_TWO_SIDED;
+    write_vector(p, "NoiseDensity", triad->noise.white.value, (single ? 1 : sqrt(2.0)) * per_unit);
+    write_vector(p, "BiasInstability", triad->noise.bias_instability.value, per_unit);
+    write_vector(p, "RandomWalk", triad->noise.random_walk.value,
+                 (single ? 1 : sqrt(0.5)) * per_unit);
     imki_note(p, false, "NoiseDensity is written as %s N, for NoiseType %s",
               single ? "the two-sided" : "sqrt(2)",
               single ? "single-sided: set it in MATLAB" : "double-sided, MATLAB's default");
-    for (int i = 0; i < 3; i++)
-        diagonal[i] = triad->g_sensitivity.value[i][i];
-    if (kind == IMK_GYRO)
-        write_vector(p, "AccelerationBias", diagonal, 1);
-    write_vector(p, "TemperatureBias", bias->order > 0 ? bias->coefficient[0].value : none, 1);
+}
+
+static void write_temperature(imki_parameters *p, const imk_triad *triad, double per_unit)
+{
+    static const double none[3] = {0};
+    const imk_temperature_polynomial *bias = &triad->bias.temperature,
+                                     *scale = &triad->scale_factor.temperature;
+    write_vector(p, "TemperatureBias", bias->order > 0 ? bias->coefficient[0].value : none,
+                 per_unit);
     imki_text_add(&p->out, "      \"TemperatureScaleFactor\": [");
     for (int i = 0; i < 3; i++) {
         double percent = scale->order > 0 ? 100 * scale->coefficient[0].value[i] : 0;
@@ -283,7 +302,83 @@ static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad, b
                       "refuse the file");
         imki_text_add(&p->out, "%s%s", imki_shortest(percent).text, i < 2 ? ", " : "]\n");
     }
-    imki_text_add(&p->out, is_last ? "    }\n" : "    },\n");
+}
+
+static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad)
+{
+    const double unit = units[kind].scale, per_unit = kind == IMK_MAG ? 1e6 : 1;
+    double diagonal[3];
+    imki_text_add(&p->out, "    \"%s\": {\n", sensor_names[kind]);
+    write_output(p, triad, unit);
+    write_vector(p, "ConstantBias", triad->bias.fixed.value, per_unit);
+    write_response(p, triad);
+    write_noise(p, triad, per_unit);
+    for (int i = 0; i < 3; i++)
+        diagonal[i] = triad->g_sensitivity.value[i][i];
+    if (kind == IMK_GYRO)
+        write_vector(p, "AccelerationBias", diagonal, 1);
+    write_temperature(p, triad, per_unit);
+    imki_text_add(&p->out, "    }");
+}
+
+static void write_coefficients(imki_parameters *p, const char *key, const double *values, int count)
+{
+    imki_text_add(&p->out, "      \"%s\": [", key);
+    imki_text_numbers(&p->out, values, count, ", ");
+    imki_text_add(&p->out, "]");
+}
+
+/* The time up to which the Allan deviation of the filter is the model's [s]; 0: only at few
+ * samples. */
+static double range_of(const imki_parameters *p, const imk_triad *triad)
+{
+    const imk_noise *noise = &triad->noise;
+    double n = IMKI_MATLAB_FARTHEST;
+    for (int i = 0; i < 3; i++)
+        if (noise->bias_instability.value[i] > 0) {
+            const imk_flicker flicker = {1, noise->bias_instability_correlation_time.value};
+            n = fmin(n, imki_matlab_flicker_range(flicker, 1 / p->settings->rate));
+        }
+    return n < SHORTEST_RANGE ? 0 : n / p->settings->rate;
+}
+
+/* The filter of bias instability, if there is one. */
+static void write_filter(imki_parameters *p)
+{
+    const double rate = p->settings->rate;
+    double to = (double)INFINITY;
+    for (int kind = 0; kind < IMK_KINDS; kind++) {
+        const imk_triad *triad = imk_model_triad(p->source, kind);
+        if (triad->present && imki_any(triad->noise.bias_instability.value))
+            to = rate > 0 ? fmin(to, range_of(p, triad)) : 0;
+    }
+    if (isinf(to))
+        return;
+    if (!(rate > 0)) {
+        imki_note(p, false,
+                  "MATLAB's default BiasInstabilityCoefficients make nearly white noise of "
+                  "BiasInstability: add --rate RATE for those of flicker noise");
+        return;
+    }
+    if (to == 0) {
+        imki_note(
+            p, true,
+            "bias_instability_correlation_time is so short that at %g Hz no coefficients make "
+            "this noise in MATLAB",
+            rate);
+        return;
+    }
+    imki_text_add(&p->out, ",\n    \"%s\": {\n      \"SampleRate\": %s,\n", filter_name,
+                  imki_shortest(rate).text);
+    write_coefficients(p, "Numerator", imki_matlab_flicker.numerator, IMKI_MATLAB_STAGES);
+    imki_text_add(&p->out, ",\n");
+    write_coefficients(p, "Denominator", imki_matlab_flicker.denominator, IMKI_MATLAB_STAGES + 1);
+    imki_text_add(&p->out, "\n    }");
+    imki_note(
+        p, false,
+        "%s is for BiasInstabilityCoefficients, which loadparams() does not read: with it the "
+        "Allan deviation is within %g %% of the model's from %.4g s to %.4g s",
+        filter_name, 100 * IMKI_MATLAB_ERROR, 1 / rate, to);
 }
 
 void imki_matlab_write(imki_parameters *p)
@@ -297,8 +392,15 @@ void imki_matlab_write(imki_parameters *p)
             name[length++] = *c;
     name[length] = '\0';
     imki_text_add(&p->out, "{\n  \"%s\": {\n", length > 0 ? name : "imu");
-    for (int kind = 0; kind < 2; kind++)
-        if (p->origin[kind]->present)
-            write_sensor(p, kind, p->origin[kind], kind == IMK_ACCEL || !p->source->accel.present);
-    imki_text_add(&p->out, "  }\n}\n");
+    bool any = false;
+    for (int kind = 0; kind < IMK_KINDS; kind++) {
+        const imk_triad *triad = imk_model_triad(p->source, kind);
+        if (!triad->present || triad->axis_count != 3)
+            continue;
+        imki_text_add(&p->out, any ? ",\n" : "");
+        write_sensor(p, kind, triad);
+        any = true;
+    }
+    write_filter(p);
+    imki_text_add(&p->out, "\n  }\n}\n");
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A log as a source of records, and a whole log in memory. */
+/* A log as a source of records, a first look at it, and a whole log in memory. */
 #include "jobs/job_internal.h"
 #include "jobs/record/even_record_internal.h"
 #include "log_reader_internal.h"
@@ -67,5 +67,25 @@ imk_status imk_log_load(const char *path, const imk_log_settings *settings, cons
     const imk_record_source source = imk_log_source(reader);
     status = imki_record_load(&source, &own, log, error);
     imk_log_close(reader);
+    return status;
+}
+
+imk_status imk_log_open_first_look(const char *path, const imk_log_settings *settings,
+                                   imk_log_reader **reader, imk_error *lacking, imk_error *error)
+{
+    const imk_status status = imk_log_open(path, settings, reader, lacking);
+    if (status == IMK_OK)
+        *lacking = (imk_error){.status = IMK_OK};
+    if (status == IMK_OK)
+        return IMK_OK;
+    if (status == IMK_ERROR_UNIT_MISSING || status == IMK_ERROR_RATE_MISSING ||
+        status == IMK_ERROR_COLUMN) {
+        imk_log_settings written = *settings;
+        written.as_written = true;
+        if (imk_log_open(path, &written, reader, NULL) == IMK_OK)
+            return IMK_OK;
+    }
+    if (error)
+        *error = *lacking;
     return status;
 }

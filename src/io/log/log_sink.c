@@ -74,6 +74,10 @@ static imk_status create(imk_log_sink *s, size_t count, const imk_log_column *co
     const bool kept = s->euroc || imk_log_format_of(s->path)->keeps_epoch;
     if (status == IMK_OK && kept)
         imk_log_write_origin(s->writer, s->origin);
+    if (status == IMK_OK) {
+        s->column_count = count;
+        memcpy(s->column, columns, count * sizeof *columns);
+    }
     return status;
 }
 
@@ -123,6 +127,7 @@ static imk_status write_rows(void *context, size_t rows, const double *const *co
                              const imk_executor *executor, imk_error *error)
 {
     imk_log_sink *s = context;
+    s->rows += rows;
     if (s->euroc) {
         const imk_status written = write_euroc(s, rows, columns, executor);
         return written == IMK_OK ? written : imk_error_set(error, written, s->path, NULL, NULL);
@@ -148,6 +153,7 @@ static void take_labels(void *context, const imk_record_source *source)
 imk_record_sink imk_log_sink_of(imk_log_sink *log)
 {
     log->writer = NULL;
+    log->rows = log->column_count = 0;
     return (imk_record_sink){
         .context = log, .begin = begin, .write = write_rows, .labels = take_labels};
 }

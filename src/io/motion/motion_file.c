@@ -3,6 +3,8 @@
 #include "imukit/motion_file.h"
 
 #include "io/file/text_file_internal.h"
+#include "jobs/job_internal.h"
+#include "jobs/record/even_record_internal.h"
 #include "motion_file_internal.h"
 
 #include <stdlib.h>
@@ -54,10 +56,14 @@ imk_status imk_motion_read(const char *path, const imk_log_settings *settings,
                            imk_error *error)
 {
     if (!imki_is_script(path, "imukit_motion")) {
+        const imk_log_settings from_header = imk_log_default();
         imk_motion_file *made = NULL;
+        settings = settings ? settings : &from_header;
         imk_status status = make(&made, error);
         if (status == IMK_OK)
-            status = imki_motion_table_open(path, settings, place, made, error);
+            status = imk_log_load(path, settings, NULL, &made->log, error);
+        if (status == IMK_OK)
+            status = imki_motion_table_take(settings->rate, place, made, error);
         return finish(status, made, file);
     }
     char *text = NULL;
@@ -67,6 +73,18 @@ imk_status imk_motion_read(const char *path, const imk_log_settings *settings,
         status = imk_motion_parse(text, size, place, seed, file, error);
     free(text);
     return status;
+}
+
+imk_status imk_motion_of_record(const imk_record_source *source, const imk_geodetic *place,
+                                imk_motion_file **file, imk_error *error)
+{
+    imk_motion_file *made = NULL;
+    imk_status status = make(&made, error);
+    if (status == IMK_OK)
+        status = imki_record_load(source, imki_job_of(NULL), &made->log, error);
+    if (status == IMK_OK)
+        status = imki_motion_table_take(source->rate, place, made, error);
+    return finish(status, made, file);
 }
 
 void imk_motion_file_free(imk_motion_file *file)

@@ -55,9 +55,9 @@ imk_status imki_script_read(const imk_document *document, const imk_geodetic *pl
 imk_status imki_motion_script_open(const imk_document *document, const imk_geodetic *place,
                                    uint64_t seed, imk_motion_file *file, imk_error *error);
 
-/* motion_table.c: poses or recorded truth, whichever the columns are. */
-imk_status imki_motion_table_open(const char *path, const imk_log_settings *settings,
-                                  const imk_geodetic *place, imk_motion_file *file,
+/* motion_table.c: poses or recorded truth, whichever the columns of file->log are.
+ * @param rate  where there is no column of times; 0: not stated */
+imk_status imki_motion_table_take(double rate, const imk_geodetic *place, imk_motion_file *file,
                                   imk_error *error);
 
 /* pose_columns.c: the trajectory of a table of poses. time: from 0, increasing. */
@@ -68,8 +68,7 @@ imk_status imki_poses_open(const imk_log *log, const double *time, const imk_geo
 bool imki_has_poses(const imk_log *log);
 
 /* recorded_motion.c: takes the columns over from the log. */
-imk_status imki_recorded_open(imk_log *log, const imk_log_settings *settings, imk_motion_file *file,
-                              imk_error *error);
+imk_status imki_recorded_open(imk_log *log, double rate, imk_motion_file *file, imk_error *error);
 
 /* table_column.c: check that a column has a unit of this dimension and no missing number. */
 imk_status imki_table_column_check(const imk_log *log, size_t column, const char *si,

@@ -5,8 +5,7 @@
 #include <stdlib.h>
 
 /* Times of the rows, from 0; by the rate where there is no column. */
-static imk_status read_times(const imk_log *log, const imk_log_settings *settings, double **times,
-                             imk_error *error)
+static imk_status read_times(const imk_log *log, double rate, double **times, imk_error *error)
 {
     const int column = imk_log_find(log, IMK_QUANTITY_TIME, -1);
     double *time = malloc((log->rows + 1) * sizeof *time);
@@ -16,8 +15,7 @@ static imk_status read_times(const imk_log *log, const imk_log_settings *setting
     if (column >= 0)
         status = imki_table_column_check(log, (size_t)column, "s", error);
     for (size_t i = 0; status == IMK_OK && i < log->rows; i++) {
-        time[i] =
-            column >= 0 ? log->data[column][i] - log->data[column][0] : (double)i / settings->rate;
+        time[i] = column >= 0 ? log->data[column][i] - log->data[column][0] : (double)i / rate;
         if (i > 0 && !(time[i] > time[i - 1])) {
             status =
                 imki_table_row_error("time", IMK_ERROR_TIME_ORDER, i + 1,
@@ -41,11 +39,11 @@ static bool has_sensors(const imk_log *log)
     return false;
 }
 
-static imk_status open_poses(const imk_log *log, const imk_log_settings *settings,
-                             const imk_geodetic *place, imk_motion_file *file, imk_error *error)
+static imk_status open_poses(const imk_log *log, double rate, const imk_geodetic *place,
+                             imk_motion_file *file, imk_error *error)
 {
     double *time = NULL;
-    imk_status status = read_times(log, settings, &time, error);
+    imk_status status = read_times(log, rate, &time, error);
     if (status == IMK_OK)
         status = imki_poses_open(log, time, place, file, error);
     if (status == IMK_OK)
@@ -54,15 +52,9 @@ static imk_status open_poses(const imk_log *log, const imk_log_settings *setting
     return status;
 }
 
-imk_status imki_motion_table_open(const char *path, const imk_log_settings *settings,
-                                  const imk_geodetic *place, imk_motion_file *file,
+imk_status imki_motion_table_take(double rate, const imk_geodetic *place, imk_motion_file *file,
                                   imk_error *error)
 {
-    const imk_log_settings from_header = imk_log_default();
-    const imk_log_settings *how = settings ? settings : &from_header;
-    imk_status status = imk_log_load(path, how, NULL, &file->log, error);
-    if (status != IMK_OK)
-        return status;
     const bool poses = imki_has_poses(&file->log), sensors = has_sensors(&file->log);
     if (poses && sensors)
         return imk_error_set(error, IMK_ERROR_CONFLICT, "",
@@ -78,8 +70,8 @@ imk_status imki_motion_table_open(const char *path, const imk_log_settings *sett
         return imk_error_set(error, IMK_ERROR_TOO_SHORT, "", "a single row is not a motion",
                              "two rows or more");
     if (sensors)
-        return imki_recorded_open(&file->log, how, file, error);
-    status = open_poses(&file->log, how, place, file, error);
+        return imki_recorded_open(&file->log, rate, file, error);
+    const imk_status status = open_poses(&file->log, rate, place, file, error);
     imk_log_free(&file->log);
     return status;
 }

@@ -25,11 +25,11 @@ static double round_rate(double rate, double steps, double length)
     return rate;
 }
 
-static imk_status find_rate(const imk_log *log, const imk_log_settings *settings, double *rate,
-                            imk_error *error)
+/* @param stated  0: not */
+static imk_status find_rate(const imk_log *log, double stated, double *rate, imk_error *error)
 {
     const int column = imk_log_find(log, IMK_QUANTITY_TIME, -1);
-    *rate = settings->rate;
+    *rate = stated;
     if (column < 0)
         return IMK_OK;
     imk_status status = imki_table_column_check(log, (size_t)column, "s", error);
@@ -37,7 +37,7 @@ static imk_status find_rate(const imk_log *log, const imk_log_settings *settings
         return status;
     const double *time = log->data[column];
     const double length = time[log->rows - 1] - time[0], steps = (double)(log->rows - 1);
-    const double interval = settings->rate > 0.0 ? 1.0 / settings->rate : log->findings.interval;
+    const double interval = stated > 0.0 ? 1.0 / stated : log->findings.interval;
     for (size_t i = 1; i < log->rows; i++) {
         const double step = time[i] - time[i - 1];
         if (!(fabs(step - interval) <= step_tolerance * interval)) {
@@ -50,7 +50,7 @@ static imk_status find_rate(const imk_log *log, const imk_log_settings *settings
                                         error);
         }
     }
-    if (!(settings->rate > 0.0))
+    if (!(stated > 0.0))
         *rate = round_rate(steps / length, steps, length);
     return IMK_OK;
 }
@@ -117,8 +117,7 @@ static imk_status take_acceleration(const imk_log *log, const double *triad[3], 
     return IMK_OK;
 }
 
-imk_status imki_recorded_open(imk_log *log, const imk_log_settings *settings, imk_motion_file *file,
-                              imk_error *error)
+imk_status imki_recorded_open(imk_log *log, double rate, imk_motion_file *file, imk_error *error)
 {
     imk_recorded_motion *recorded = &file->recorded;
     imk_status status = take_triad(log, IMK_QUANTITY_ANGULAR_RATE, "gyro", "rad/s", "rad",
@@ -129,7 +128,7 @@ imk_status imki_recorded_open(imk_log *log, const imk_log_settings *settings, im
     if (status == IMK_OK)
         status = take_acceleration(log, recorded->angular_acceleration, error);
     if (status == IMK_OK)
-        status = find_rate(log, settings, &recorded->rate, error);
+        status = find_rate(log, rate, &recorded->rate, error);
     if (status != IMK_OK)
         return status;
     recorded->count = log->rows;

@@ -6,6 +6,8 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "io/file/text_file_internal.h"
+#include "jobs/job_internal.h"
+#include "jobs/record/even_record_internal.h"
 #include "motion_file_internal.h"
 #include "step_text_internal.h"
 
@@ -158,22 +160,21 @@ static imk_status open_script(const char *path, imk_temperature_file *file, imk_
 
 /* ---- tables and constants -------------------------------------------------------------------- */
 
-static imk_status open_table(const char *path, imk_temperature_file *file, imk_error *error)
+static imk_status refuse_column(const char *name, imk_error *error)
 {
-    const imk_log_settings settings = imk_log_default();
+    return imk_error_set(error, IMK_ERROR_COLUMN, name, "this column is missing",
+                         "give the columns time [s] and temperature [degC]");
+}
+
+/* The columns of file->log. */
+static imk_status take_table(imk_temperature_file *file, imk_error *error)
+{
     imk_log *log = &file->log;
-    imk_status status = imk_log_load(path, &settings, NULL, log, error);
-    if (status == IMK_ERROR_RATE_MISSING) /* here no rate can stand for the times */
-        return imk_error_set(error, IMK_ERROR_COLUMN, "time", "this column is missing",
-                             "give the columns time [s] and temperature [degC]");
-    if (status != IMK_OK)
-        return status;
     const int time = imk_log_find(log, IMK_QUANTITY_TIME, -1);
     const int temperature = imk_log_find(log, IMK_QUANTITY_TEMPERATURE, -1);
-    if (temperature < 0)
-        return imk_error_set(error, IMK_ERROR_COLUMN, "temperature", "this column is missing",
-                             "give the columns time [s] and temperature [degC]");
-    status = imki_table_column_check(log, (size_t)time, "s", error);
+    if (time < 0 || temperature < 0)
+        return refuse_column(time < 0 ? "time" : "temperature", error);
+    imk_status status = imki_table_column_check(log, (size_t)time, "s", error);
     if (status == IMK_OK)
         status = imki_table_column_check(log, (size_t)temperature, "K", error);
     if (status != IMK_OK)
@@ -197,6 +198,15 @@ static imk_status open_table(const char *path, imk_temperature_file *file, imk_e
     file->profile.time = log->data[time];
     file->profile.temperature = log->data[temperature];
     return IMK_OK;
+}
+
+static imk_status open_table(const char *path, imk_temperature_file *file, imk_error *error)
+{
+    const imk_log_settings settings = imk_log_default();
+    const imk_status status = imk_log_load(path, &settings, NULL, &file->log, error);
+    if (status == IMK_ERROR_RATE_MISSING) /* here no rate can stand for the times */
+        return refuse_column("time", error);
+    return status == IMK_OK ? take_table(file, error) : status;
 }
 
 /* Does it begin as a number does, and is no file? */
@@ -234,15 +244,10 @@ static imk_status carry(imk_temperature_file *file, imk_error *error)
     return IMK_OK;
 }
 
-imk_status imk_temperature_read(const char *path, imk_temperature_file **file, imk_error *error)
+/* Takes it over. */
+static imk_status finish(imk_status status, imk_temperature_file *made, imk_temperature_file **file,
+                         imk_error *error)
 {
-    imk_temperature_file *made = calloc(1, sizeof *made);
-    if (!made)
-        return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
-    imk_status status = is_quantity(path) ? open_constant(path, made, error)
-                        : imki_is_script(path, "imukit_temperature")
-                            ? open_script(path, made, error)
-                            : open_table(path, made, error);
     if (status == IMK_OK)
         status = imk_temperature_validate(&made->profile, error);
     if (status == IMK_OK)
@@ -253,6 +258,30 @@ imk_status imk_temperature_read(const char *path, imk_temperature_file **file, i
     }
     *file = made;
     return IMK_OK;
+}
+
+imk_status imk_temperature_read(const char *path, imk_temperature_file **file, imk_error *error)
+{
+    imk_temperature_file *made = calloc(1, sizeof *made);
+    if (!made)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    const imk_status status = is_quantity(path) ? open_constant(path, made, error)
+                              : imki_is_script(path, "imukit_temperature")
+                                  ? open_script(path, made, error)
+                                  : open_table(path, made, error);
+    return finish(status, made, file, error);
+}
+
+imk_status imk_temperature_of_record(const imk_record_source *source, imk_temperature_file **file,
+                                     imk_error *error)
+{
+    imk_temperature_file *made = calloc(1, sizeof *made);
+    if (!made)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    imk_status status = imki_record_load(source, imki_job_of(NULL), &made->log, error);
+    if (status == IMK_OK)
+        status = take_table(made, error);
+    return finish(status, made, file, error);
 }
 
 void imk_temperature_file_free(imk_temperature_file *file)

@@ -3,6 +3,7 @@
  * records loaded, what is known before. */
 #include "calibrate_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/job_internal.h"
 
 #include <math.h>
@@ -90,7 +91,10 @@ static imk_status choose_frame(imk_calibrate_log *b, imk_error *error)
                                                    : IMK_FRAME_UPPER;
     if (known || b->calibration->frame != IMK_FRAME_REFERENCE)
         return IMK_OK;
-    return imk_error_set(error, IMK_ERROR_CONFLICT, "frame", NULL, NULL);
+    return imk_error_set(error, IMK_ERROR_CONFLICT, "frame",
+                         "gravity alone does not tell how the triad stands in the housing",
+                         "add a record of sixposition, ferraris, tumble or rate-table, or choose "
+                         "upper-triangular, lower-triangular or symmetric");
 }
 
 /* ---- procedures ------------------------------------------------------------------------------ */
@@ -140,6 +144,57 @@ static imk_procedure_settings settings_of(const imk_calibrate_log *b, imk_proced
     return s;
 }
 
+/* A setting that no procedure looks at was meant for another one. */
+static imk_status check_used(const imk_calibrate_log *b, imk_error *error)
+{
+    const imk_calibrate_log_settings *s = &b->settings;
+    bool has[IMK_PROCEDURES] = {false};
+    for (size_t k = 0; k < b->count && !s->repeatability; k++)
+        has[b->record[k].procedure] = true;
+    const bool referenced = has[IMK_PROCEDURE_RATE_TABLE] || has[IMK_PROCEDURE_TUMBLE] ||
+                            has[IMK_PROCEDURE_CENTRIFUGE] || has[IMK_PROCEDURE_SPIN];
+    const bool magnetic = has[IMK_PROCEDURE_MAGNETOMETER] || has[IMK_PROCEDURE_MULTIPOSITION];
+    const bool turned = has[IMK_PROCEDURE_TURNS] || has[IMK_PROCEDURE_FERRARIS];
+    const bool thermal = has[IMK_PROCEDURE_THERMAL];
+    const struct {
+        const char *field;
+        bool given, used;
+        const char *by;
+    } settings[] = {
+        {"field", !isnan(s->field), magnetic, "multiposition and magnetometer"},
+        {"dip", !isnan(s->dip), magnetic, "multiposition and magnetometer"},
+        {"table_axis", s->table_axis >= 0, referenced, "rate-table"},
+        {"turn_angle", !isnan(s->turn_angle), turned, "ferraris and turns"},
+        {"temperature_order", s->temperature_order != 0, thermal, "thermal"},
+        {"reference_temperature", !isnan(s->reference_temperature), thermal, "thermal"},
+    };
+    for (size_t k = 0; k < sizeof settings / sizeof settings[0]; k++)
+        if (settings[k].given && !settings[k].used) {
+            char only[80];
+            snprintf(only, sizeof only, "only by %s: leave it out", settings[k].by);
+            return imk_error_set(error, IMK_ERROR_CONFLICT, settings[k].field,
+                                 "not used by the procedures of these records", only);
+        }
+    return IMK_OK;
+}
+
+/* Numbers that there cannot be. */
+static imk_status check_numbers(const imk_calibrate_log_settings *s, imk_error *error)
+{
+    const double right = 1.5707963267948966;
+    if (s->place_known && !(fabs(s->place.latitude) <= right))
+        return imki_refuse(error, IMK_ERROR_RANGE, "latitude", s->place.latitude, right,
+                           "-90 to 90 deg");
+    if (s->place_known && !(s->place.height >= -1e4 && s->place.height <= 1e5))
+        return imki_refuse(error, IMK_ERROR_RANGE, "height", s->place.height, 1e5, "-10 to 100 km");
+    if (!isnan(s->field) && !(s->field > 0 && s->field < 1e-3))
+        return imki_refuse(error, IMK_ERROR_RANGE, "field", s->field, 1e-3,
+                           "the field of the Earth, 22 to 67 uT");
+    if (!isnan(s->dip) && !(fabs(s->dip) <= right))
+        return imki_refuse(error, IMK_ERROR_RANGE, "dip", s->dip, right, "-90 to 90 deg");
+    return IMK_OK;
+}
+
 imk_status imki_calibrate_set_up(imk_calibrate_log *b, const imk_procedure *procedure,
                                  imk_error *error)
 {
@@ -153,16 +208,28 @@ imk_status imki_calibrate_set_up(imk_calibrate_log *b, const imk_procedure *proc
         b->record[k].procedure = procedure[k];
         means = means || imk_procedure_takes_means(procedure[k]);
         if (s->estimate && procedure[k] == IMK_PROCEDURE_MAGNETOMETER)
-            return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate", NULL, NULL);
+            return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate",
+                                 "it names terms of gyros and accelerometers",
+                                 "leave it out with magnetometer, which always estimates the same");
     }
     if (s->pose_means && (!means || s->repeatability))
-        return imk_error_set(error, IMK_ERROR_CONFLICT, "pose_means", NULL, NULL);
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "pose_means",
+                             "these procedures need every sample",
+                             "only multiposition, sixposition and tumble take tables of means");
     if (s->estimate && (s->with || s->without))
-        return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate", NULL, NULL);
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate",
+                             "it names all terms to estimate",
+                             "leave out what is to be estimated with or without them");
     if (s->closed_form &&
         (b->count != 1 || procedure[0] != IMK_PROCEDURE_FERRARIS || s->repeatability))
-        return imk_error_set(error, IMK_ERROR_CONFLICT, "closed_form", NULL, NULL);
-    imk_status status = set_place(b, error);
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "closed_form",
+                             "it solves one record of ferraris only",
+                             "use maximum likelihood for other procedures and for several records");
+    imk_status status = check_used(b, error);
+    if (status == IMK_OK)
+        status = check_numbers(s, error);
+    if (status == IMK_OK)
+        status = set_place(b, error);
     if (status == IMK_OK)
         status = choose_frame(b, error);
     for (size_t k = 0; status == IMK_OK && k < b->count; k++)

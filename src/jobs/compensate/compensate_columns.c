@@ -26,9 +26,10 @@ static size_t columns_of(const imk_record_source *source, int sensor)
 }
 
 /* A reading is in counts when the model has a sensitivity, and only then. */
-static imk_status check_unit(const imk_log_column *column, const imk_triad *triad, int sensor,
-                             imk_findings *findings, imk_error *error)
+static imk_status check_unit(const imk_record_source *source, int index, const imk_triad *triad,
+                             int sensor, imk_findings *findings, imk_error *error)
 {
+    const imk_log_column *column = &source->columns[index];
     const bool counts = triad->sensitivity.value[0] != 0;
     char name[112];
     if (counts && !in_counts(column)) {
@@ -42,6 +43,9 @@ static imk_status check_unit(const imk_log_column *column, const imk_triad *tria
     if (counts && column->increment)
         return imki_fail(findings, error, IMK_ERROR_DIMENSION, "increments_in_counts", column->name,
                          IMKI_NUMBERS(sensor));
+    if (counts && source->axes_turned) /* wrong signs, because of the zero offset */
+        return imki_fail(findings, error, IMK_ERROR_CONFLICT, "compensate:axes_of_counts", NULL, 0,
+                         NULL);
     return IMK_OK;
 }
 
@@ -60,7 +64,7 @@ static imk_status match_sensor(const imk_record_source *source, const imk_triad 
         columns->axis[sensor][i] = column;
         status = column < 0 ? imki_fail(findings, error, IMK_ERROR_COLUMN, "no_axis", label,
                                         IMKI_NUMBERS(triad->axis_count, sensor))
-                            : check_unit(&source->columns[column], triad, sensor, findings, error);
+                            : check_unit(source, column, triad, sensor, findings, error);
     }
     if (status == IMK_OK && there != (size_t)triad->axis_count)
         status = imki_fail(findings, error, IMK_ERROR_COLUMN, "axes_do_not_match", NULL,

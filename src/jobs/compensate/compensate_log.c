@@ -334,6 +334,12 @@ static imk_status check_handed(const imk_record_source *source, const imk_model 
     if (status == IMK_OK && s->temperature < 0)
         status =
             imki_refuse(error, IMK_ERROR_RANGE, "temperature", s->temperature, 0, "at least 0 K");
+    if (status == IMK_OK && !(s->temperature_time > 0))
+        status = imki_refuse(error, IMK_ERROR_RANGE, "temperature_time", s->temperature_time, 0,
+                             "a positive time");
+    if (status == IMK_OK && !(s->powered_for >= 0))
+        status = imki_refuse(error, IMK_ERROR_RANGE, "powered_for", s->powered_for, 0,
+                             "a time that is not negative");
     if (status == IMK_OK)
         status = imki_check_unit(&s->gyro_unit, imk_unit_of("rad/s").dimension, "gyro_unit", error);
     if (status == IMK_OK)

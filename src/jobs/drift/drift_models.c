@@ -248,6 +248,11 @@ imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
     return status;
 }
 
+void *imki_drift_models_room(imk_drift_models *models, size_t size)
+{
+    return imki_arena_room(&((holder *)models)->arena, size);
+}
+
 /* Mean of the runs that are numbers. */
 static double mean_square(size_t runs, size_t stride, const double *square)
 {

@@ -31,6 +31,9 @@ bool imki_drift_would_do(const imk_drift_models *r, const imk_drift_candidate *c
 double imki_drift_variance(const imk_drift_moments *m, imk_drift_requirement requirement);
 double imki_drift_shift(const imk_drift_moments *m, imk_drift_requirement requirement);
 
+/* Memory that lives as long as the result; NULL when memory is exhausted. */
+void *imki_drift_models_room(imk_drift_models *models, size_t size);
+
 /* What a model does not state and that would matter (imk_drift_missing) for the figures of a mask
  * (1 << imk_drift_requirement) at the times of the settings; by a second analysis, if the model
  * leaves out anything.

@@ -77,7 +77,8 @@ imk_status imk_model_take_noise(imk_model *model, const imk_model *noise, imk_er
     if (gyros_differ || axes_differ(&model->accel, &noise->accel)) {
         return imki_refuse(error, IMK_ERROR_CONFLICT, gyros_differ ? "gyro" : "accel",
                            gyros_differ ? model->gyro.axis_count : model->accel.axis_count,
-                           gyros_differ ? noise->gyro.axis_count : noise->accel.axis_count, NULL);
+                           gyros_differ ? noise->gyro.axis_count : noise->accel.axis_count,
+                           "the number of axes of the noise (the limit)");
     }
     if (noise->gyro.present) {
         take_triad(&model->gyro, &noise->gyro);

@@ -92,7 +92,8 @@ imk_status imki_compare_rates(imk_identify_several *s, size_t other, imk_error *
             s->readings[c].kind = IMK_READING_UNTOLD;
     }
     if (!any) {
-        imk_error_set(error, IMK_ERROR_CONFLICT, "rate", NULL, NULL);
+        imk_error_set(error, IMK_ERROR_CONFLICT, "rate", "not that of the first record",
+                      "runs of one sensor have one sampling rate");
         if (error)
             error->index = (int)other;
         return IMK_ERROR_CONFLICT;

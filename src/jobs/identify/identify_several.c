@@ -17,9 +17,11 @@ imk_status imk_identify_comparable(const imk_identify_log *first, const imk_iden
     for (size_t c = 0; c < a->count && same; c++)
         same = strcmp(imk_even_record_column(a, c)->name, imk_even_record_column(b, c)->name) == 0;
     if (!same)
-        return imk_error_set(error, IMK_ERROR_CONFLICT, "channels", NULL, NULL);
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "channels", "not those of the first record",
+                             "only records with the same columns can be compared");
     if (runs && fabs(b->dt / a->dt - 1) > 1e-3)
-        return imk_error_set(error, IMK_ERROR_CONFLICT, "rate", NULL, NULL);
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "rate", "not that of the first record",
+                             "runs of one sensor have one sampling rate");
     return IMK_OK;
 }
 

@@ -263,6 +263,12 @@ imk_status imk_record_plan_run(const imk_model *model, const imk_record_plan_set
         return status;
     if (!(settings->rate > 0))
         return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, 0, "a rate above 0 Hz");
+    if (!(settings->significance > 0 && settings->significance < 0.5))
+        return imki_refuse(error, IMK_ERROR_RANGE, "significance", settings->significance, 0.5,
+                           "a false-alarm rate above 0 and below 0.5");
+    if (!(settings->duration >= 0))
+        return imki_refuse(error, IMK_ERROR_RANGE, "duration", settings->duration, 0,
+                           "a length above 0 s, or 0 for the one that is needed");
     planning about = {.model = model, .settings = imk_bounds_default()};
     about.settings.dt = 1 / settings->rate;
     about.settings.significance = settings->significance;

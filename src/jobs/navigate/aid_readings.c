@@ -144,6 +144,14 @@ static imk_status fill_series(imk_navigate_log *n, const columns_of_kind *k, imk
     return IMK_OK;
 }
 
+static bool has_arm(const imk_aid *aid)
+{
+    bool any = false;
+    for (int i = 0; i < 3; i++)
+        any = any || aid->lever_arm[i] != 0.0 || aid->lever_arm_sigma[i] > 0.0;
+    return any;
+}
+
 /* What is stated of a kind, or its defaults where the sigmas are columns.
  * @return false: neither, so the kind is not used */
 static bool describe_kind(const imk_navigate_log *n, imk_aid_kind kind, columns_of_kind *k,
@@ -156,20 +164,22 @@ static bool describe_kind(const imk_navigate_log *n, imk_aid_kind kind, columns_
     made->last = (double)NAN;
     for (int i = 0; i < 3; i++)
         made->last_off[i] = made->last_sigma[i] = (double)NAN;
+    made->sigma_columns = true;
     for (size_t i = 0; i < s->aid_count; i++)
         if (s->aid[i].kind == kind) {
             made->aid = s->aid[i];
-            return true;
+            made->sigma_columns = false;
         }
-    if (sigma == IMKI_AID_ROLES)
+    if (made->sigma_columns && sigma == IMKI_AID_ROLES)
         return false;
-    k->sigma = sigma;
-    made->sigma_columns = true;
-    for (int i = 0; i < 3; i++) {
-        const bool odometer = kind == IMK_AID_ODOMETER;
-        made->aid.lever_arm[i] = odometer ? s->speed_lever_arm[i] : s->lever_arm[i];
-        made->aid.lever_arm_sigma[i] = odometer ? 0.0 : s->lever_arm_sigma[i];
-    }
+    if (made->sigma_columns)
+        k->sigma = sigma;
+    if (kind != IMK_AID_HEADING && !has_arm(&made->aid))
+        for (int i = 0; i < 3; i++) {
+            const bool odometer = kind == IMK_AID_ODOMETER;
+            made->aid.lever_arm[i] = odometer ? s->speed_lever_arm[i] : s->lever_arm[i];
+            made->aid.lever_arm_sigma[i] = odometer ? 0.0 : s->lever_arm_sigma[i];
+        }
     return true;
 }
 

@@ -37,16 +37,46 @@ void imk_navigate_log_free(imk_navigate_log *result)
     imki_resize(&allocator, result, 0);
 }
 
+/* Sigmas of each kind, without times. */
+static imk_status check_aids(const imk_navigate_log_settings *s, imk_error *error)
+{
+    for (size_t k = 0; k < s->aid_count; k++) {
+        const imk_aid *aid = &s->aid[k];
+        const imk_status status = imk_aid_validate(aid, error);
+        if (status != IMK_OK)
+            return status;
+        if (aid->interval != 1.0 || aid->from != 1.0 || aid->until < HUGE_VAL)
+            return imk_error_set(error, IMK_ERROR_CONFLICT, "aid",
+                                 "the times of readings are those of the table",
+                                 "leave out `at`, `every`, `from` and `until`");
+        for (size_t j = 0; j < k; j++)
+            if (s->aid[j].kind == aid->kind)
+                return imk_error_set(error, IMK_ERROR_KEY_DUPLICATE, "aid",
+                                     imk_aid_kind_name(aid->kind), NULL);
+    }
+    return IMK_OK;
+}
+
 static imk_status check_settings(const imk_navigate_log_settings *s, imk_error *error)
 {
     const bool timetable = s->stops == IMK_STOPS_TIMETABLE, stops = s->stops != IMK_STOPS_NONE;
-    const double g = s->standard_gravity;
+    const double g = s->standard_gravity, quarter = 1.5707963267948968; /* rounded upwards */
     const struct {
         const char *field;
         bool wrong;
         double value, limit;
         const char *expected;
     } rules[] = {
+        {"place.latitude", !(fabs(s->place.latitude) <= quarter), s->place.latitude, quarter,
+         "at most 90 deg"},
+        {"place.longitude", !(fabs(s->place.longitude) <= 4 * quarter), s->place.longitude,
+         4 * quarter, "at most 360 deg"},
+        {"place.height", !(s->place.height >= -1e4 && s->place.height <= 1e5), s->place.height, 1e5,
+         "-10 to 100 km"},
+        {"attitude", !(fabs(s->attitude[0]) + fabs(s->attitude[2]) <= 8 * quarter), s->attitude[0],
+         4 * quarter, "roll and yaw within 360 deg"},
+        {"attitude", !(fabs(s->attitude[1]) <= quarter), s->attitude[1], quarter,
+         "a pitch within 90 deg"},
         {"align", !(s->align >= 1 || s->align == 0), s->align, 1, "at least 1 s, or 0"},
         {"model", stops && !s->model, 0, 0, "a model: stops need one"},
         {"stops", s->stops == IMK_STOPS_FOUND && s->align == 0, 0, 0, "an alignment before stops"},
@@ -76,11 +106,9 @@ static imk_status check_settings(const imk_navigate_log_settings *s, imk_error *
         if (rules[k].wrong)
             return imki_refuse(error, IMK_ERROR_RANGE, rules[k].field, rules[k].value,
                                rules[k].limit, rules[k].expected);
-    for (size_t k = 0; k < s->aid_count; k++) {
-        const imk_status status = imk_aid_validate(&s->aid[k], error);
-        if (status != IMK_OK)
-            return status;
-    }
+    const imk_status status = check_aids(s, error);
+    if (status != IMK_OK)
+        return status;
     for (int i = 0; i < 3; i++)
         if (!(s->position_sigma[i] >= 0 && s->velocity_sigma[i] >= 0))
             return imki_refuse(error, IMK_ERROR_RANGE,

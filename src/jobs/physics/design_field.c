@@ -102,6 +102,19 @@ static void number_in_unit(const imk_design_field *field, double value, char *te
         snprintf(text, size, "%.0f", value);
 }
 
+/* Two settings of a run. */
+static bool setting_in_unit(imk_error *error)
+{
+    const bool is_step = strcmp(error->field, "step") == 0;
+    if ((!is_step && strcmp(error->field, "rate") != 0) || error->status != IMK_ERROR_RANGE)
+        return false;
+    snprintf(error->found, sizeof error->found,
+             is_step ? "\"%.6g s\" is outside its valid range (limit %.6g s)"
+                     : "\"%.6g Hz\" is outside its valid range (limit %.6g Hz)",
+             error->value, error->limit);
+    return true;
+}
+
 void imk_design_error_in_units(const imk_instrument *instrument, const void *design,
                                imk_error *error)
 {
@@ -109,6 +122,8 @@ void imk_design_error_in_units(const imk_instrument *instrument, const void *des
     double value;
     if (!error || error->found[0] ||
         (error->status != IMK_ERROR_RANGE && error->status != IMK_ERROR_CONFLICT))
+        return;
+    if (setting_in_unit(error))
         return;
     for (size_t i = 0; i < instrument->field_count; i++) {
         const imk_design_field *field = &instrument->fields[i];

@@ -38,7 +38,8 @@ imk_status imki_physics_check(const void *result, const imk_physics_log_settings
         return imk_error_set(error, IMK_ERROR_ARGUMENT,
                              settings->instrument ? "design" : "instrument", NULL,
                              "an instrument, and a design of it");
-    return imk_design_check(settings->instrument, settings->design, error);
+    const imk_status good = imk_design_check(settings->instrument, settings->design, error);
+    return good == IMK_OK ? imk_physics_input_check(settings, error) : good;
 }
 
 double imki_physics_turning(const imk_physics_input *input)

@@ -85,11 +85,17 @@ static imk_status column_of(const char *text, imk_log_column *column, imk_error 
 static void read_column(const imk_array_source *s, size_t c, size_t first, size_t count, double *to)
 {
     const imk_unit *unit = &s->column[c].unit;
-    if (unit->scale == 1 && unit->offset == 0)
-        memcpy(to, s->data[c] + first, count * sizeof *to);
+    const ptrdiff_t stride = s->stride[c];
+    const double *from = s->data[c] + (ptrdiff_t)first * stride;
+    const bool si = unit->scale == 1 && unit->offset == 0;
+    if (si && stride == 1)
+        memcpy(to, from, count * sizeof *to);
+    else if (si)
+        for (size_t k = 0; k < count; k++)
+            to[k] = from[(ptrdiff_t)k * stride];
     else
         for (size_t k = 0; k < count; k++)
-            to[k] = unit->scale * s->data[c][first + k] + unit->offset;
+            to[k] = unit->scale * from[(ptrdiff_t)k * stride] + unit->offset;
 }
 
 static imk_status read_rows(void *context, size_t rows_most, double *const *columns, size_t *rows,
@@ -133,7 +139,7 @@ static void count_not_finite(imk_array_source *s)
     for (size_t row = 0; row < s->rows; row++) {
         bool finite = true;
         for (size_t c = 0; c < s->column_count; c++)
-            finite = finite && isfinite(s->data[c][row]);
+            finite = finite && isfinite(s->data[c][(ptrdiff_t)row * s->stride[c]]);
         if (!finite && s->findings.not_finite++ == 0)
             s->findings.first_not_finite = row + 1;
     }
@@ -169,10 +175,10 @@ static imk_status find_times(int time, imk_array_source *s, imk_error *error)
     return IMK_OK;
 }
 
-imk_status imk_array_source_make(size_t column_count, const char *const *names,
-                                 const double *const *data, size_t rows, double rate,
-                                 imk_array_source *memory, imk_record_source *source,
-                                 imk_error *error)
+imk_status imk_array_source_strided(size_t column_count, const char *const *names,
+                                    const double *const *data, const ptrdiff_t *strides,
+                                    size_t rows, double rate, imk_array_source *memory,
+                                    imk_record_source *source, imk_error *error)
 {
     int time = -1;
     if (!names || !data || !memory || !source)
@@ -194,6 +200,7 @@ imk_status imk_array_source_make(size_t column_count, const char *const *names,
                 return imk_error_set(error, IMK_ERROR_COLUMN, names[c], NULL,
                                      "use each column name only once");
         made.data[c] = data[c];
+        made.stride[c] = strides ? strides[c] : 1;
         if (made.column[c].quantity == IMK_QUANTITY_TIME)
             time = (int)c;
     }
@@ -213,4 +220,13 @@ imk_status imk_array_source_make(size_t column_count, const char *const *names,
                                   .findings = findings_of,
                                   .progress = progress_of};
     return IMK_OK;
+}
+
+imk_status imk_array_source_make(size_t column_count, const char *const *names,
+                                 const double *const *data, size_t rows, double rate,
+                                 imk_array_source *memory, imk_record_source *source,
+                                 imk_error *error)
+{
+    return imk_array_source_strided(column_count, names, data, NULL, rows, rate, memory, source,
+                                    error);
 }

@@ -108,89 +108,111 @@ static int time_decimals(double rate, double start)
  * cache of a small machine. */
 enum { BLOCK_ROWS = 65536 };
 
-typedef struct recording {
-    const imk_simulate_log_settings *settings;
+struct imk_simulated_rows {
+    imki_arena arena;
+    imk_simulate_log_settings settings;
     layout layout;
     imk_simulator *simulator;
     bool drops;
-    double *column[COLUMNS_MAX]; /* BLOCK_ROWS each */
-} recording;
+    uint64_t next;
+};
 
 /* Take out the rows that are lost. @return how many stay */
-static size_t drop_rows(recording *r, uint64_t first, size_t count)
+static size_t drop_rows(const imk_simulated_rows *r, size_t count, double *const *column)
 {
     size_t kept = 0;
     for (size_t k = 0; k < count; k++) {
-        if (imk_simulator_dropped(r->simulator, first + k))
+        if (imk_simulator_dropped(r->simulator, r->next + k))
             continue;
         for (size_t c = 0; c < r->layout.count; c++)
-            r->column[c][kept] = r->column[c][k];
+            column[c][kept] = column[c][k];
         kept++;
     }
     return kept;
 }
 
 /* @return how many rows there are */
-static size_t make_rows(recording *r, uint64_t first, size_t count, const imk_executor *executor)
+static size_t make_rows(imk_simulated_rows *r, size_t count, double *const *column,
+                        const imk_executor *executor)
 {
-    const imk_simulate_log_settings *s = r->settings;
+    const imk_simulate_log_settings *s = &r->settings;
     const layout *l = &r->layout;
-    double *time = r->column[0];
+    double *time = column[0];
     for (size_t k = 0; k < count; k++)
-        time[k] = (double)(first + k) / s->simulation.rate;
+        time[k] = (double)(r->next + k) / s->simulation.rate;
     if (s->simulation.temperature)
-        imk_temperature_at(s->simulation.temperature, count, time, r->column[1 + l->channels],
-                           NULL);
+        imk_temperature_at(s->simulation.temperature, count, time, column[1 + l->channels], NULL);
     for (size_t k = 0; k < count && s->start != 0; k++)
         time[k] += s->start;
-    imk_simulator_next(r->simulator, count, r->column + 1, executor);
+    imk_simulator_next(r->simulator, count, column + 1, executor);
     for (size_t c = 1; c <= l->channels; c++)
         if (l->factor[c] != 1)
             for (size_t k = 0; k < count; k++)
-                r->column[c][k] *= l->factor[c];
-    return r->drops ? drop_rows(r, first, count) : count;
+                column[c][k] *= l->factor[c];
+    const size_t kept = r->drops ? drop_rows(r, count, column) : count;
+    r->next += count;
+    return kept;
 }
 
 /* Vibration makes rows so slow to compute that fewer at a time keep the progress going. */
 static size_t rows_at_once(const imk_simulation *simulation)
 {
     const imk_trajectory *trajectory = simulation->motion.trajectory;
-    size_t parts = trajectory ? imk_trajectory_substeps(trajectory, 1 / simulation->rate) : 1;
+    const size_t parts = trajectory ? imk_trajectory_substeps(trajectory, 1 / simulation->rate) : 1;
     return parts < BLOCK_ROWS / 1024 ? BLOCK_ROWS / parts : 1024;
 }
 
-static imk_status stream(recording *r, const imk_record_sink *sink, const char *stage,
-                         const imk_job *job, imk_error *error)
+uint64_t imk_simulated_rows_left(const imk_simulated_rows *r)
 {
-    const imk_simulate_log_settings *s = r->settings;
-    const size_t step = rows_at_once(&s->simulation);
-    int decimals[COLUMNS_MAX];
-    for (size_t c = 0; c < r->layout.count; c++)
-        decimals[c] = c == 0 ? time_decimals(s->simulation.rate, s->start) : -1;
-    imk_status status = sink->begin(sink->context, r->layout.count, r->layout.column, decimals,
-                                    r->drops ? 0 : s->rows, error);
-    for (uint64_t first = 0; first < s->rows && status == IMK_OK; first += step) {
-        const size_t count = s->rows - first < step ? (size_t)(s->rows - first) : step;
-        const size_t made = make_rows(r, first, count, job->executor);
-        status = sink->write(sink->context, made, (const double *const *)r->column, job->executor,
-                             error);
-        if (status == IMK_OK)
-            status = imki_job_progress(job, stage, "rows", first + count, s->rows, error);
+    return r->settings.rows > 0 ? r->settings.rows - r->next : UINT64_MAX;
+}
+
+const imk_log_column *imk_simulated_rows_columns(const imk_simulated_rows *r, size_t *count)
+{
+    *count = r->layout.count;
+    return r->layout.column;
+}
+
+imk_status imk_simulated_rows_next(imk_simulated_rows *r, size_t most, double *const *columns,
+                                   const char *stage, const imk_job *job, size_t *made,
+                                   imk_error *error)
+{
+    const size_t step = rows_at_once(&r->settings.simulation);
+    imk_status status = IMK_OK;
+    *made = 0;
+    job = imki_job_of(job);
+    while (most > 0 && status == IMK_OK) {
+        const uint64_t left = imk_simulated_rows_left(r);
+        size_t count = most < step ? most : step;
+        double *at[COLUMNS_MAX];
+        if (left < count)
+            count = (size_t)left;
+        if (count == 0)
+            break;
+        for (size_t c = 0; c < r->layout.count; c++)
+            at[c] = columns[c] + *made;
+        *made += make_rows(r, count, at, job->executor);
+        most -= count;
+        status = imki_job_progress(job, stage, "rows", r->next, r->settings.rows, error);
     }
     return status;
 }
 
-imk_status imki_simulate_check(const imk_model *model, const imk_simulate_log_settings *s,
-                               const imk_record_sink *sink, imk_error *error)
+void imk_simulated_rows_free(imk_simulated_rows *r)
+{
+    if (!r)
+        return;
+    imki_arena arena = r->arena;
+    imki_arena_free(&arena);
+}
+
+static imk_status check_settings(const imk_model *model, const imk_simulate_log_settings *s,
+                                 const void *result, imk_error *error)
 {
     imk_status status =
-        imki_check_call(sink, s, settings_cookie, "imk_simulate_log_default()", error);
-    if (!sink || status == IMK_OK)
-        status = imki_check_sink(sink, error);
+        imki_check_call(result, s, settings_cookie, "imk_simulate_log_default()", error);
     if (status == IMK_OK)
         status = imki_check_model(model, error);
-    if (status == IMK_OK && s->rows == 0)
-        status = imki_refuse(error, IMK_ERROR_RANGE, "rows", 0, 1, "at least 1 row");
     if (status == IMK_OK)
         status =
             imki_check_unit(&s->gyro_unit, imk_unit_of(s->increments ? "rad" : "rad/s").dimension,
@@ -202,29 +224,83 @@ imk_status imki_simulate_check(const imk_model *model, const imk_simulate_log_se
     return status;
 }
 
+imk_status imki_simulate_check(const imk_model *model, const imk_simulate_log_settings *s,
+                               const imk_record_sink *sink, imk_error *error)
+{
+    imk_status status = imki_check_sink(sink, error);
+    if (status == IMK_OK)
+        status = check_settings(model, s, sink, error);
+    if (status == IMK_OK && s->rows == 0)
+        status = imki_refuse(error, IMK_ERROR_RANGE, "rows", 0, 1, "at least 1 row");
+    return status;
+}
+
+imk_status imk_simulated_rows_start(const imk_model *model,
+                                    const imk_simulate_log_settings *settings, const imk_job *job,
+                                    imk_simulated_rows **rows, imk_error *error)
+{
+    imki_arena arena = {.allocator = imki_job_of(job)->allocator};
+    imk_status status = check_settings(model, settings, rows, error);
+    if (status != IMK_OK)
+        return status;
+    const size_t size = imk_simulator_size(model, &settings->simulation);
+    imk_simulated_rows *r = imki_arena_take(&arena, sizeof *r);
+    void *memory = imki_arena_room(&arena, size > 256 ? size : 256); /* a cache line begins there */
+    status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    if (r && memory) {
+        r->settings = *settings;
+        r->layout = make_layout(model, settings);
+        r->drops = model->timing.drops.value > 0;
+        status =
+            imk_simulator_start(model, &settings->simulation, &r->simulator, memory, size, error);
+    }
+    if (status != IMK_OK) {
+        imki_arena_free(&arena);
+        return status;
+    }
+    r->arena = arena;
+    *rows = r;
+    return IMK_OK;
+}
+
+static imk_status stream(imk_simulated_rows *r, double *const *column, const imk_record_sink *sink,
+                         const char *stage, const imk_job *job, imk_error *error)
+{
+    const imk_simulate_log_settings *s = &r->settings;
+    const size_t step = rows_at_once(&s->simulation);
+    int decimals[COLUMNS_MAX];
+    for (size_t c = 0; c < r->layout.count; c++)
+        decimals[c] = c == 0 ? time_decimals(s->simulation.rate, s->start) : -1;
+    imk_status status = sink->begin(sink->context, r->layout.count, r->layout.column, decimals,
+                                    r->drops ? 0 : s->rows, error);
+    while (imk_simulated_rows_left(r) > 0 && status == IMK_OK) {
+        const uint64_t left = imk_simulated_rows_left(r);
+        const size_t made = make_rows(r, left < step ? (size_t)left : step, column, job->executor);
+        status =
+            sink->write(sink->context, made, (const double *const *)column, job->executor, error);
+        if (status == IMK_OK)
+            status = imki_job_progress(job, stage, "rows", r->next, s->rows, error);
+    }
+    return status;
+}
+
 imk_status imk_simulate_log_run(const imk_model *model, const imk_simulate_log_settings *settings,
                                 const imk_record_sink *sink, const char *stage, const imk_job *job,
                                 imk_error *error)
 {
+    imk_simulated_rows *r = NULL;
+    double *column[COLUMNS_MAX];
     job = imki_job_of(job);
     imk_status status = imki_simulate_check(model, settings, sink, error);
+    if (status == IMK_OK)
+        status = imk_simulated_rows_start(model, settings, job, &r, error);
     if (status != IMK_OK)
         return status;
-    imki_arena arena = {.allocator = job->allocator};
-    recording r = {.settings = settings,
-                   .layout = make_layout(model, settings),
-                   .drops = model->timing.drops.value > 0};
-    const size_t size = imk_simulator_size(model, &settings->simulation);
-    void *memory = imki_arena_room(&arena, size > 256 ? size : 256); /* a cache line begins there */
-    double *block = imki_arena_room(&arena, r.layout.count * BLOCK_ROWS * sizeof *block);
-    status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    for (size_t c = 0; block && c < r.layout.count; c++)
-        r.column[c] = block + c * BLOCK_ROWS;
-    if (memory && block)
-        status =
-            imk_simulator_start(model, &settings->simulation, &r.simulator, memory, size, error);
-    if (status == IMK_OK)
-        status = stream(&r, sink, stage, job, error);
-    imki_arena_free(&arena);
+    double *block = imki_arena_room(&r->arena, r->layout.count * BLOCK_ROWS * sizeof *block);
+    for (size_t c = 0; block && c < r->layout.count; c++)
+        column[c] = block + c * BLOCK_ROWS;
+    status = block ? stream(r, column, sink, stage, job, error)
+                   : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    imk_simulated_rows_free(r);
     return status;
 }

@@ -2,6 +2,8 @@
 /* Spectra of a record, channel by channel: densities, lines, and the noise parameters they show. */
 #include "imukit/spectrum_log.h"
 
+#include "base/refuse_internal.h"
+#include "imukit/channel_units.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
 #include "jobs/record/record_check_internal.h"
@@ -193,11 +195,9 @@ static imk_status compute(imk_spectrum_log *log, const imk_job *job, imk_error *
 {
     const double half_rate = 0.5 / log->record.dt;
     imk_status status = IMK_OK;
-    if (!(log->settings.from < half_rate)) {
-        imki_fail(&log->findings, error, IMK_ERROR_RANGE, "from_beyond", NULL,
-                  IMKI_NUMBERS(log->settings.from, half_rate));
-        return imk_error_set(error, IMK_ERROR_RANGE, "from", NULL, NULL);
-    }
+    if (!(log->settings.from < half_rate))
+        return imki_refuse(error, IMK_ERROR_RANGE, "from", log->settings.from, half_rate,
+                           "below half the sampling rate");
     imki_arena scratch = {.allocator = job->allocator};
     spectrum_work *work = imki_arena_take(&scratch, sizeof *work);
     if (!work)
@@ -214,6 +214,36 @@ static imk_status compute(imk_spectrum_log *log, const imk_job *job, imk_error *
     return status;
 }
 
+imk_spectrum_band imk_spectrum_log_band(const imk_spectrum_log *spectrum, size_t channel,
+                                        const imk_spectrum_band *band)
+{
+    const imk_log_column *column = imk_even_record_column(&spectrum->record, channel);
+    const double unit = imk_channel_plain_unit(column).scale;
+    const double scale = (spectrum->settings.one_sided ? 2 : 1) / unit / unit;
+    imk_spectrum_band shown = *band;
+    shown.density *= scale;
+    shown.lower *= scale;
+    shown.upper *= scale;
+    return shown;
+}
+
+static imk_status check(const imk_spectrum_log_settings *s, imk_error *error)
+{
+    imk_status status = imki_check_fraction("confidence", s->confidence, error);
+    if (status == IMK_OK)
+        status = imki_check_fraction("false_alarm", s->false_alarm, error);
+    if (status != IMK_OK)
+        return status;
+    if (!(s->resolution >= 0))
+        return imki_refuse(error, IMK_ERROR_RANGE, "resolution", s->resolution, 0, "at least 0 Hz");
+    if (!(s->from >= 0))
+        return imki_refuse(error, IMK_ERROR_RANGE, "from", s->from, 0, "at least 0 Hz");
+    if (s->to != 0 && !(s->to > s->from))
+        return imki_refuse(error, IMK_ERROR_RANGE, "to", s->to, s->from,
+                           "a frequency above the lowest one of the fit, or 0 Hz for the highest");
+    return IMK_OK;
+}
+
 imk_status imk_spectrum_log_run(const imk_record_source *source,
                                 const imk_spectrum_log_settings *settings, const imk_job *job,
                                 imk_spectrum_log **result, imk_error *error)
@@ -225,7 +255,7 @@ imk_status imk_spectrum_log_run(const imk_record_source *source,
     *result = NULL;
     job = imki_job_of(job);
     if (status == IMK_OK)
-        status = imki_check_fraction("confidence", settings->confidence, error);
+        status = check(settings, error);
     imk_spectrum_log *made = imki_result_new(job, sizeof *made, &status, error);
     if (!made)
         return status;

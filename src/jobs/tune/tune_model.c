@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const uint32_t settings_cookie = 0x54554e31; /* "TUN1" */
 
@@ -23,6 +24,48 @@ imk_tune_model_settings imk_tune_model_default(void)
 {
     return (imk_tune_model_settings){
         .cookie = settings_cookie, .tuning = imk_filter_tuning_default(), .seed = 1};
+}
+
+/* ---- what is asked ---- */
+
+imk_status imk_tune_model_rate(double stated, imk_filter_tuning_settings *tuning, imk_error *error)
+{
+    double rate = stated;
+    bool other = false;
+    if (!tuning || tuning->motion_count > IMK_TUNING_MOTIONS_MAX)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "tuning", NULL, NULL);
+    for (size_t m = 0; m < tuning->motion_count; m++) {
+        const imk_recorded_motion *recorded = tuning->motion[m].recorded;
+        if (!recorded)
+            continue;
+        if (rate != 0 && !(fabs(recorded->rate - rate) <= 1e-6 * rate)) {
+            (void)imk_error_set(error, IMK_ERROR_CONFLICT, "rate",
+                                other ? "another motion has another rate"
+                                      : "a motion has another rate",
+                                "recorded rates and forces are taken at their own rate");
+            if (error) {
+                error->index = (int)m;
+                error->value = recorded->rate;
+                error->limit = rate;
+            }
+            return IMK_ERROR_CONFLICT;
+        }
+        rate = recorded->rate;
+        other = true;
+    }
+    if (rate != 0)
+        tuning->rate = rate;
+    return IMK_OK;
+}
+
+void imk_tune_model_unstated(const imk_model *model, imk_unstated *unstated)
+{
+    imk_unstated all;
+    imk_model_unstated(model, &all);
+    unstated->count = 0;
+    for (size_t i = 0; i < all.count; i++)
+        if (strcmp(all.term[i].key, "bias.repeatability") != 0)
+            unstated->term[unstated->count++] = all.term[i];
 }
 
 /* ---- runs ---- */

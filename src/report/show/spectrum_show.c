@@ -172,15 +172,14 @@ static void line_data(const imk_spectrum_line *l, imk_unit unit, imk_result *res
     imk_result_end(result);
 }
 
-static void band_data(const imk_spectrum_band *b, double scale, const char *unit,
-                      imk_result *result)
+static void band_data(imk_spectrum_band b, const char *unit, imk_result *result)
 {
     imk_result_object(result, NULL);
-    imk_result_quantity(result, "frequency", b->frequency, "Hz");
-    imk_result_quantity(result, "density", b->density * scale, unit);
-    imk_result_quantity(result, "lower", b->lower * scale, unit);
-    imk_result_quantity(result, "upper", b->upper * scale, unit);
-    imk_result_number(result, "degrees", b->degrees);
+    imk_result_quantity(result, "frequency", b.frequency, "Hz");
+    imk_result_quantity(result, "density", b.density, unit);
+    imk_result_quantity(result, "lower", b.lower, unit);
+    imk_result_quantity(result, "upper", b.upper, unit);
+    imk_result_number(result, "degrees", b.degrees);
     imk_result_end(result);
 }
 
@@ -210,7 +209,6 @@ static void channel_data(const imk_spectrum_log *s, size_t channel, imk_result *
     const imk_log_column *column = imk_even_record_column(&s->record, channel);
     const imk_channel_spectrum *f = &s->channel[channel];
     const imk_unit unit = imk_channel_plain_unit(column);
-    const double scale = sides(s) / unit.scale / unit.scale;
     char density[64];
     snprintf(density, sizeof density, "(%.48s)^2/Hz", unit.text);
     imk_result_object(result, NULL);
@@ -220,7 +218,7 @@ static void channel_data(const imk_spectrum_log *s, size_t channel, imk_result *
     imk_result_number(result, "fraction_used", f->spectrum.fraction_used);
     imk_result_array(result, "bands");
     for (size_t i = 0; i < f->coarse_count; i++)
-        band_data(&f->coarse[i], scale, density, result);
+        band_data(imk_spectrum_log_band(s, channel, &f->coarse[i]), density, result);
     imk_result_end(result);
     imk_result_array(result, "lines");
     for (size_t i = 0; i < f->line_count; i++)

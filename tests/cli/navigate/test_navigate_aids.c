@@ -46,6 +46,10 @@ static void simulate_drive(void)
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
     "gnss.csv --aid-lever-arm '1 -0.5 -1.5 m' "
 
+#define ARM                                                                                        \
+    "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
+    "gnss.csv --json --aid-sigma 'position 1 m, velocity 0.1 "
+
 #define MILLISECONDS                                                                               \
     "$I navigate drive.csv " PLACE " --align 25s --heading '91 +- 2 deg' --model unit.yaml --aid " \
     "ms.csv --strict"
@@ -108,6 +112,11 @@ static void test_drive(void **state)
     assert_int_equal(run(DRIVE "--strict --aid-until 10s"), 1);
     check_contains(err, "none of 174 readings is used", "aligned for longer");
     check_contains(err, "--aid-until leaves none", "aligned for longer");
+    /* The lever arm of one aid counts as that of all does, and goes before it. */
+    assert_int_equal(run(ARM
+                         "m/s' --aid-lever-arm '1 -0.5 -1.5 m' >a && " ARM
+                         "m/s, lever arm 1 -0.5 -1.5 m' --aid-lever-arm '9 9 9 m' >b && cmp a b"),
+                     0);
     /* An outage: compared, and told. */
     assert_int_equal(run(DRIVE "--aid-until 100s"), 0);
     check_contains(out, "s without aids the estimate is off the position read by north", "outage");

@@ -2,6 +2,8 @@
 /* The noise of a filter: the numbers, how consistent they are, and what makes the errors. */
 #include "tune_show_internal.h"
 
+#include "report/show/drift/unstated_show_internal.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -52,7 +54,7 @@ static void show_time(const imk_tune_model *r, int kind, size_t t, imk_result *r
     for (size_t s = 0; s < tuning->source_count; s++) {
         const double share = tuning->answer[kind].share[s * tuning->time_count + t];
         if (fabs(share) >= 1e-4)
-            imk_result_number(result, tuning->source[s].name, share);
+            imk_result_number(result, imk_result_key(result, "%s", tuning->source[s].name), share);
     }
     imk_result_end(result);
     imk_result_end(result);
@@ -86,7 +88,7 @@ static void show_answer(const imk_tune_model *r, int kind, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_data(const imk_tune_model *r, imk_result *result)
+static void show_data(const imk_tune_model *r, const imk_unstated *assumed, imk_result *result)
 {
     const imk_filter_tuning *tuning = r->tuning;
     const imk_filter_tuning_settings *s = &r->settings.tuning;
@@ -110,6 +112,7 @@ static void show_data(const imk_tune_model *r, imk_result *result)
     for (int kind = 0; kind < IMK_FILTER_ANSWERS; kind++)
         show_answer(r, kind, result);
     imk_result_end(result);
+    imki_show_assumed_data(assumed, result);
     imk_result_end(result);
 }
 
@@ -311,10 +314,22 @@ void imk_tune_verdict(const imk_tune_model *r, char *text, size_t size)
              ". With scale factors among the states of the filter it is %.3g to %.3g", low, high);
 }
 
-void imk_show_tune(const imk_tune_model *r, imk_result *result)
+/* What was assumed, term by term. */
+static void show_assumed(const imk_unstated *assumed, imk_result *result)
+{
+    for (size_t i = 0; assumed && i < assumed->count; i++) {
+        const imk_unstated_term *term = &assumed->term[i];
+        imk_result_line(result, "assumed: %s %.3g %s (%s)", term->text,
+                        term->typical / imk_unit_of(term->unit).scale, term->unit,
+                        imk_grade_table(term->grade) ? imk_grade_table(term->grade)->name : "-");
+    }
+}
+
+void imk_show_tune(const imk_tune_model *r, const imk_unstated *assumed, imk_result *result)
 {
     const imk_filter_tuning *tuning = r->tuning;
-    show_data(r, result);
+    show_assumed(assumed, result);
+    show_data(r, assumed, result);
     imk_result_title(result, "Noise of a filter", "%s on %zu motion%s", r->name,
                      r->settings.tuning.motion_count,
                      r->settings.tuning.motion_count > 1 ? "s" : "");

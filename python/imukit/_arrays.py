@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays of results: of NumPy where it is installed, else memoryviews."""
+from __future__ import annotations
+
+import array
+import math
+from typing import Any, Iterable
+
+try:
+    import numpy
+except ImportError:
+    numpy = None  # type: ignore[assignment]
+
+Array = Any
+"""A vector of float64: numpy.ndarray where NumPy is installed, else memoryview."""
+
+
+def of_numbers(numbers: Iterable[float | None]) -> Array:
+    """A vector of numbers; None becomes NaN."""
+    made = array.array("d", (math.nan if x is None else x for x in numbers))
+    return _view(made)
+
+
+def of_buffer(buffer: Any) -> Array:
+    """The numbers of an object with the buffer protocol, not copied."""
+    return numpy.asarray(buffer) if numpy is not None else memoryview(buffer)
+
+
+def of_array(values: Any) -> Any:
+    """An array of NumPy of what can become one, such as a column of a table."""
+    import numpy as found
+    return found.asarray(values)
+
+
+def of_bytes(numbers: bytes, columns: int = 1, column: int = 0) -> Array:
+    """A column of a matrix of float64 in memory; read only."""
+    return of_buffer(memoryview(numbers).cast("d")[column::columns])
+
+
+def of_matrix(numbers: bytes, columns: int, which: range, shape: tuple[int, ...],
+              rows: int | None = None) -> Array:
+    """Some columns of a matrix of float64 in memory, each row in a shape."""
+    rows = len(numbers) // (8 * columns) if rows is None else rows
+    if numpy is not None:
+        return numpy.frombuffer(numbers).reshape(rows, columns)[:, which].reshape(rows, *shape)
+    view = memoryview(numbers).cast("d")
+    made = array.array("d")
+    for row in range(rows):
+        made.extend(view[row * columns + which.start:row * columns + which.stop:which.step])
+    return memoryview(made).cast("B").cast("d", (rows, *shape))
+
+
+def empty(rows: int) -> Array:
+    """A vector to be written."""
+    if numpy is not None:
+        return numpy.empty(rows)
+    return _view(array.array("d", bytes(8 * rows)))
+
+
+def matrix(vector: Array, rows: int, columns: int) -> Array:
+    """The numbers of a vector as rows, not copied."""
+    if numpy is not None:
+        return vector.reshape(rows, columns)
+    return vector.cast("B").cast("d", (rows, columns))
+
+
+def _view(made: array.array[float]) -> Array:
+    return numpy.asarray(made) if numpy is not None else memoryview(made)

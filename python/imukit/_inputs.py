@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Logs, arrays and tables that the functions of imukit take, as records of the library."""
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from . import _arrays, _core
+from ._units import si
+
+Data = Any
+"""A path of a log, a Log, a vector, a matrix whose rows are samples, a dictionary of columns, a list
+of columns, or a table with columns such as pandas.DataFrame."""
+
+
+def is_path(data: Data) -> bool:
+    """Is it the name of a file?"""
+    return isinstance(data, (str, os.PathLike))
+
+
+def is_several(data: Any) -> bool:
+    """Is it a sequence of records, not of the columns of one?"""
+    return isinstance(data, (list, tuple)) and len(data) > 0 and all(
+        is_path(one) or isinstance(one, Mapping) or hasattr(one, "columns")
+        or hasattr(one, "_imukit_columns") for one in data)
+
+
+def open_record(data: Data, rate: float | str | None, columns: str | Sequence[str] | None,
+                log: Mapping[str, Any] | None = None, name: str = "the record") -> Any:
+    """The record of `data`.
+
+    rate     sampling rate [Hz], or a text such as "200 Hz"
+    columns  names of the columns, with units in brackets: "gyro_x [deg/s]"; without, SI
+    log      options for reading a log
+    name     in messages, where it is no file
+    """
+    if is_path(data):
+        return _core.open_log(data, log_options(rate, columns, log))
+    if log:
+        raise TypeError(f"{', '.join(log)}: only for a log in a file")
+    if hasattr(data, "_imukit_columns"):
+        names, arrays = data._imukit_columns()
+    elif isinstance(data, Mapping) or hasattr(data, "to_numpy") and hasattr(data, "columns"):
+        names = [str(name) for name in data] if isinstance(data, Mapping) else \
+            [str(name) for name in data.columns]
+        arrays = [_column(data[name]) for name in data]
+    else:
+        names, arrays = None, _columns(data)
+    if columns is not None:
+        names = [columns] if isinstance(columns, str) else list(columns)
+    if names is None:
+        names = _names(_count(arrays))
+    seconds = 0.0 if rate is None else si("rate", rate, "Hz")
+    return _core.arrays(name, tuple(names), arrays, seconds)
+
+
+def log_options(rate: Any, columns: Any, log: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Options for reading a log, as the extension takes them."""
+    options = dict(log or {})
+    if rate is not None:
+        options["rate"] = rate
+    if columns is not None:
+        options["columns"] = columns if isinstance(columns, str) else ",".join(columns)
+    return options
+
+
+def _names(count: int) -> list[str]:
+    return ["x"] if count == 1 else [f"column_{k + 1}" for k in range(count)]
+
+
+def _count(arrays: Any) -> int:
+    if isinstance(arrays, list):
+        return len(arrays)
+    shape = memoryview(arrays).shape or ()
+    return shape[1] if len(shape) == 2 else 1
+
+
+def _column(values: Any) -> Any:
+    """A vector: as it is where it has the buffer protocol or is a sequence."""
+    try:
+        memoryview(values)
+    except TypeError:
+        if hasattr(values, "__array__"):
+            return _arrays.of_array(values)
+        if not isinstance(values, Sequence) or isinstance(values, (str, bytes)):
+            values = list(values)
+    return values
+
+
+def _columns(data: Any) -> Any:
+    """A vector or matrix with the buffer protocol, or a list of vectors."""
+    data = _column(data)
+    try:
+        memoryview(data)
+        return data
+    except TypeError:
+        pass
+    if all(isinstance(x, (int, float)) for x in data):
+        return [data]
+    return [_column(column) for column in data]

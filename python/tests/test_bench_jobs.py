@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Calibration and evaluation, compared with the command and with what was simulated."""
+import math
+import os
+import pickle
+import random
+import tempfile
+import unittest
+import warnings
+
+import command
+import imukit
+
+
+def setUpModule():
+    global FOLDER
+    FOLDER = tempfile.TemporaryDirectory()
+    command.run(FOLDER.name, "calibrate", "--plan", "ADIS16488", "-p", "multiposition", "--rate",
+                "20Hz", "-o", "programme.yaml")
+    for seed in (1, 2):
+        command.run(FOLDER.name, "simulate", "ADIS16488", "--motion", "programme.yaml", "--rate",
+                    "20Hz", "--duration", "110s", "--seed", seed, "-o", f"bench{seed}.csv")
+    with open(os.path.join(FOLDER.name, "table.csv"), "w", encoding="utf-8") as file:
+        file.write("reference [deg/s],reading [deg/s]\n")
+        for k in [*range(-4, 5), *range(3, -5, -1)] * 2:
+            file.write(f"{k * 25},{k * 25.01 + 0.02 * math.sin(17 * k)}\n")
+
+
+def tearDownModule():
+    FOLDER.cleanup()
+
+
+class InFolder(command.SameAsCommand):
+    def setUp(self):
+        self.folder = FOLDER.name
+        before = os.getcwd()
+        os.chdir(self.folder)
+        self.addCleanup(os.chdir, before)
+        silent = warnings.catch_warnings()
+        silent.__enter__()
+        self.addCleanup(silent.__exit__, None, None, None)
+        warnings.simplefilter("ignore", imukit.DataWarning)
+
+
+class Same(InFolder):
+    def test_calibrate(self):
+        result = imukit.calibrate("bench1.csv", "multiposition", gravity="9.81 m/s^2",
+                                  without="g2_sensitivity")
+        self.same(result, "calibrate", "bench1.csv", "-p", "multiposition", "--gravity",
+                  "9.81m/s^2", "--without", "g2_sensitivity")
+        self.assertTrue(result.usable)
+        count = len(result.estimates)
+        matrix = result.correlations
+        for i in range(count):
+            self.assertAlmostEqual(matrix[i, i], 1, 12)
+            self.assertEqual(matrix[i, 0], matrix[0, i])
+        self.assertEqual(len(result.residuals), len(result.poses))
+        again = pickle.loads(pickle.dumps(result))
+        self.assertEqual(again.model, result.model)
+        self.assertEqual(again.level, result.level)
+
+    def test_several_into(self):
+        result = imukit.calibrate(["bench1.csv", "bench2.csv"], "multiposition", into="ADIS16488",
+                                  position=("48.1 deg", "11.6 deg", 520), estimate=["accel.bias"])
+        words = ("calibrate", "bench1.csv", "bench2.csv", "-p", "multiposition", "--into",
+                 "ADIS16488", "--position", "48.1 deg, 11.6 deg, 520 m", "--estimate", "accel.bias")
+        self.same(result, *words)
+        command.run(self.folder, *words, "-o", "into.yaml", "--anyway")
+        self.assertEqual(result.model or imukit.Model("into.yaml"), imukit.Model("into.yaml"))
+
+    def test_repeatability(self):
+        models = []
+        for seed in (1, 2):
+            command.run(self.folder, "calibrate", f"bench{seed}.csv", "-p", "multiposition", "-o",
+                        f"run{seed}.yaml")
+            models.append(imukit.Model(f"run{seed}.yaml"))
+        result = imukit.calibrate(models, "repeatability")
+        due = imukit.calibrate(["run1.yaml", "run2.yaml"], "repeatability")
+        self.same(due, "calibrate", "run1.yaml", "run2.yaml", "-p", "repeatability")
+        self.assertEqual(result.repeatability.to_dict(), due.repeatability.to_dict())
+
+    def test_evaluate(self):
+        result = imukit.evaluate("table.csv", limit="linearity 0.001 %, zero 1 deg/s",
+                                 full_scale="200 deg/s")
+        self.same(result, "evaluate", "table.csv", "--limit", "linearity 0.001 %, zero 1 deg/s",
+                  "--full-scale", "200 deg/s")
+        self.assertFalse(result.limits_met)
+        self.assertEqual(result.figures()["linearity"].verdict, "not met")
+        self.assertIn("limit", {f.code for f in result.findings})
+        two = imukit.evaluate(["table.csv", imukit.read_log("table.csv", rate=1,
+                                                            any_columns=True)])
+        self.assertEqual(two.channels[0].runs, 2)
+
+
+FACES = [(9.8, 0, 0), (-9.8, 0, 0), (0, 9.8, 0), (0, -9.8, 0), (0, 0, 9.8), (0, 0, -9.8)]
+
+
+def faces(scale=1.01, bias=0.1, counts=1.0):
+    draw = random.Random(1)
+    return {f"accel_{a}{'' if counts == 1 else ' [count]'}":
+            [counts * (scale * f[k] + bias + draw.gauss(0, 1e-4)) for f in FACES * 3]
+            for k, a in enumerate("xyz")}
+
+
+class Calibrate(unittest.TestCase):
+    def test_known_truth(self):
+        result = imukit.calibrate(faces(), "sixposition", pose_means=True, gravity=9.8)
+        for axis in "xyz":
+            scale = result.estimates[f"accel.scale_factor.fixed.{axis}"]
+            bias = result.estimates[f"accel.bias.fixed.{axis}"]
+            self.assertAlmostEqual(scale.value, 0.01, delta=6 * scale.sigma + 1e-5)
+            self.assertAlmostEqual(bias.value, 0.1, delta=6 * bias.sigma + 1e-4)
+            self.assertEqual((bias.unit, scale.unit), ("m/s^2", "1"))
+
+    def test_counts(self):
+        for given in (400, "400 count/(m/s^2)", (400, 400, 400)):
+            result = imukit.calibrate(faces(counts=400.0), "sixposition", pose_means=True,
+                                      gravity=9.8, accel_sensitivity=given)
+            self.assertAlmostEqual(result.estimates["accel.scale_factor.fixed.x"].value, 0.01,
+                                   delta=1e-4)
+
+    def test_refused(self):
+        good = {"procedure": "sixposition", "pose_means": True, "gravity": 9.8}
+        refused = [{"procedure": "sixpositions"}, {"procedure": ["sixposition", "spin"]},
+                   {"gravity": 3}, {"estimate": "no such term"},
+                   {"estimate": "bias", "with_": "gyro"}, {"with_": "bias"},
+                   {"frame": "skew"}, {"estimator": "closed-form"}, {"estimator": "guess"},
+                   {"position": "91 deg, 0 deg, 0 m"}, {"position": (1, 2)},
+                   {"position": (math.nan, 0, 0)}, {"accel_sensitivity": "3 m"},
+                   {"accel_sensitivity": ()}, {"accel_sensitivity": (1,) * 9},
+                   {"accel_range": -1}, {"field": ("50 uT",)}, {"field": (5, 6, 7)},
+                   {"motion": "no_such_file.yaml"}, {"motion_offset": 3},
+                   {"turn_angle": 1}, {"field": 5}, {"dip": 2}, {"reference_temperature": 300},
+                   {"model": "no such part"}, {"into": "ADIS16488", "model": "ADIS16488"},
+                   {"temperature_order": 77}, {"table_axis": "w"}, {"placement": -1},
+                   {"procedure": "rate-table"}, {"procedure": "repeatability"}]
+        for named in refused:
+            with self.subTest(named), self.assertRaises((ValueError, OSError)):
+                imukit.calibrate(faces(), **{**good, **named})
+        for named in ({"placement": []}, {"estimate": 5}, {"robust": 1, "no": 2}, {"motion": 7},
+                      {"procedure": 5}, {"with_": 5}, {"name": 5}):
+            with self.subTest(named), self.assertRaises(TypeError):
+                imukit.calibrate(faces(), **{**good, **named})
+        for data in ([], None, "no_such_file.csv", {"accel_x": [1.0]}, ["a.csv", "b.csv"]):
+            with self.subTest(data), self.assertRaises((ValueError, TypeError)):
+                imukit.calibrate(data, "multiposition")
+
+    def test_cancelled(self):
+        with self.assertRaises(imukit.Error):
+            imukit.calibrate(faces(), "sixposition", pose_means=True, gravity=9.8,
+                             progress=lambda *said: False)
+
+
+class Evaluate(unittest.TestCase):
+    def test_refused(self):
+        table = {"reference [rad/s]": [1.0, 2, 3, 2, 1], "reading [rad/s]": [1.0, 2, 3, 2.1, 1]}
+        for named in ({"limit": "linearty 5 %"}, {"limit": "linearity"}, {"limit": "linearity 5 m"},
+                      {"limit": "bias_instability 5 deg/h"}, {"limit": "linearity 1 %,"},
+                      {"full_scale": -1}, {"full_scale": "3 m"}, {"level_width": math.nan},
+                      {"sensitivity": 3}, {"zero": 1}, {"confidence": 2}, {"motion_offset": 1},
+                      {"motion": "no_such_file.yaml"}, {"static": [1.0, 2.0]}, {"gaps": "keep"},
+                      {"table_axis": "w"}):
+            with self.subTest(named), self.assertRaises((ValueError, OSError)):
+                imukit.evaluate(table, **named)
+        for named in ({"unit": 5}, {"limit": 5}, {"motion": 5}, {"no": 1}, {"trim": []}):
+            with self.subTest(named), self.assertRaises(TypeError):
+                imukit.evaluate(table, **named)
+        for data in ((), [], None, "no_such_file.csv", {"gyro_x": [1.0, 2.0]}, [1.0, 2.0],
+                     [table] * 65):
+            with self.subTest(str(data)[:20]), self.assertRaises((ValueError, TypeError)):
+                imukit.evaluate(data)
+
+    def test_counts(self):
+        table = {"reference [rad/s]": [-1.0, 0, 1, 0, -1], "reading [count]":
+                 [-1000.0, 2, 1001, 1, -1000]}
+        figures = imukit.evaluate(table, sensitivity=1000).figures()
+        self.assertAlmostEqual(figures["sensitivity"].value, 1.0005, delta=1e-3)
+        self.assertIn("accuracy", figures)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sensors that are stepped."""
+import array
+import math
+import unittest
+
+import imukit
+
+try:
+    import numpy
+except ImportError:
+    numpy = None
+
+GRAVITY = [0.0, 0.0, -9.8]
+
+
+class Steps(unittest.TestCase):
+    def test_same_seed_same_readings(self):
+        one, two = (imukit.Sensor("tactical", 100, seed=3) for _ in range(2))
+        for k in range(600):
+            w = [0.1 * math.sin(0.01 * k), 0.0, 0.2]
+            self.assertEqual(list(one.step(w, GRAVITY)),
+                             list(two.step(array.array("d", w), array.array("d", GRAVITY))))
+
+    def test_several_are_runs(self):
+        several = imukit.Sensor("AHRS", 100, seed=5, run=2, count=4)
+        alone = [imukit.Sensor("AHRS", 100, seed=5, run=2 + i) for i in range(4)]
+        rate = memoryview(array.array("d", [0.1 * i for i in range(12)])).cast("B").cast("d", (3, 4))
+        for _ in range(520):
+            found = memoryview(several.step(rate, GRAVITY)).tolist()
+            for i, sensor in enumerate(alone):
+                due = sensor.step([rate[k, i] for k in range(3)], GRAVITY)
+                self.assertEqual([channel[i] for channel in found], list(due))
+
+    def test_out_is_written(self):
+        sensor = imukit.Sensor("AHRS", 100)
+        out = array.array("d", [0.0] * 6)
+        self.assertIs(sensor.step([0, 0, 0], GRAVITY, out=out), out)
+        self.assertNotEqual(out[2], 0.0)
+
+    def test_not_a_number(self):
+        bad, good = (imukit.Sensor("tactical", 100, seed=1) for _ in range(2))
+        reading = bad.step([math.nan, 0, 0], GRAVITY)
+        self.assertTrue(math.isnan(reading[0]))
+        good.step([0, 0, 0], GRAVITY)
+        self.assertTrue(all(math.isfinite(x) for x in bad.step([0, 0, 0], GRAVITY)))
+
+    def test_temperature(self):
+        sensor = imukit.Sensor("tactical", 100, temperature=True)
+        sensor.step([0, 0, 0], GRAVITY, temperature=300.0, temperature_rate=0.1)
+        with self.assertRaisesRegex(ValueError, "needs one"):
+            sensor.step([0, 0, 0], GRAVITY)
+        with self.assertRaisesRegex(ValueError, "temperature=True"):
+            imukit.Sensor("tactical", 100).step([0, 0, 0], GRAVITY, temperature=300.0)
+
+    @unittest.skipIf(numpy is None, "needs NumPy")
+    def test_arrays_of_numpy(self):
+        sensor = imukit.Sensor("tactical", 100, count=100, temperature=True)
+        found = sensor.step(numpy.zeros((3, 100)), numpy.array(GRAVITY),
+                            temperature=numpy.linspace(280, 320, 100))
+        self.assertEqual(found.shape, (6, 100))
+        with self.assertRaises(ValueError):
+            sensor.step(numpy.zeros((100, 3)), numpy.array(GRAVITY), temperature=300.0)
+        with self.assertRaises(ValueError):
+            sensor.step(numpy.zeros((3, 100), "f4"), numpy.array(GRAVITY), temperature=300.0)
+        with self.assertRaises((ValueError, BufferError)):
+            sensor.step(numpy.zeros((3, 200))[:, ::2], numpy.array(GRAVITY), temperature=300.0)
+
+
+class Refused(unittest.TestCase):
+    def test_arguments(self):
+        for kind, arguments, named in ((imukit.Error, ("tactical", 0), {}),
+                                       (imukit.Error, ("no such model", 100), {}),
+                                       (imukit.Error, ("tactical", "1 deg"), {}),
+                                       (ValueError, ("tactical", 100), {"count": -1}),
+                                       (imukit.Error, ("tactical", 100), {"count": 0}),
+                                       (TypeError, ("tactical", None), {}),
+                                       (TypeError, ("tactical", 100), {"run": "x"})):
+            with self.subTest(arguments=arguments, named=named), self.assertRaises(kind):
+                imukit.Sensor(*arguments, **named)
+
+    def test_steps(self):
+        sensor = imukit.Sensor("tactical", 100)
+        for truth in (([0, 0], GRAVITY), ([0, 0, 0, 0], GRAVITY), ("abc", GRAVITY), (5, GRAVITY),
+                      ([0, 0, 0], [None] * 3), (b"12345678" * 3, GRAVITY)):
+            with self.subTest(truth), self.assertRaises((TypeError, ValueError)):
+                sensor.step(*truth)
+        for out in (array.array("d", [0] * 5), array.array("f", [0] * 6), bytes(48), 3):
+            with self.subTest(out=out), self.assertRaises((TypeError, ValueError, BufferError)):
+                sensor.step([0, 0, 0], GRAVITY, out=out)
+        with self.assertRaises(IndexError):
+            sensor.dropped(3, 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

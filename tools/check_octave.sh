@@ -1,0 +1,32 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# The functions of GNU Octave: they are built, agree with the command to the last bit, refuse what is
+# wrong; the file for MATLAB's imuSensor makes the noise of the model; the examples of docs/matlab.md
+# run. Real logs are expected in ../shared/data.
+set -eu
+cd "$(dirname "$0")/.."
+build=$(realpath "${BUILD:-build}")
+out=build-check/octave
+rm -rf "$out"
+mkdir -p "$out/build"
+cmake -S . -B "$build" >/dev/null
+cmake --build "$build" -j "$(nproc)" --target octave imukit-command >"$out/build.log" 2>&1 ||
+    { cat "$out/build.log"; exit 1; }
+! grep -n warning: "$out/build.log"
+
+octave="timeout 300 octave-cli --no-gui --quiet --no-init-file --no-history"
+run() { # FILE ARGUMENT...
+    $octave "$@" 2>"$out/run.log" </dev/null || { cat "$out/run.log"; exit 1; }
+}
+run matlab/test_gateway.m "$build" ../shared/data
+run matlab/test_imusensor.m "$build"
+
+# The page has a folder of its own, which looks like the root of the repository.
+ln -s "$build/imukit" "$build/octave" "$out/build/"
+awk '/^<!-- not run: tools\/check octave runs it -->$/ { due = 1; next }
+     due && /^```$/ { due = inside = 0; next }
+     inside { print }
+     due && /^```matlab$/ { inside = 1 }' docs/matlab.md >"$out/page.m"
+[ "$(wc -l <"$out/page.m")" -gt 20 ] || { echo "docs/matlab.md has no examples"; exit 1; }
+(cd "$out" && $octave page.m) >"$out/page.log" 2>&1 </dev/null || { tail -n 20 "$out/page.log"; exit 1; }
+echo "$(grep -c . "$out/page.m") lines of docs/matlab.md"
