@@ -5,6 +5,7 @@
 #   make test    build and run every test
 #   make check   format, static analysis, sanitizers, portability, byte identity
 #   make tidy-deep  what `make check` reads with clang's analyzer, with 22 times its patience
+#   make sanitize-all  every test with the sanitizers, of which `make check` runs a part
 #   make bench   speed against yardsticks: build/bench.csv
 #   make experiments  build the long statistical experiments: build/experiments/*
 #   make experiments-all  run them all and renew experiments/results
@@ -31,7 +32,7 @@ quiet = >$(BUILD)/make.log 2>&1 || { cat $(BUILD)/make.log; exit 1; }
 configure = mkdir -p $(BUILD) && $(alone) cmake -S . -B $(BUILD) -D CMAKE_BUILD_TYPE=Release
 compile = $(alone) cmake --build $(BUILD) -j $(JOBS)
 
-.PHONY: all demo test check tidy-deep bench experiments experiments-all faults fuzz octave mpi python install-python install deps clean help
+.PHONY: all demo test check tidy-deep sanitize-all bench experiments experiments-all faults fuzz octave mpi python install-python install deps clean help
 
 all:
 	@tools/install_dependencies.sh build
@@ -58,6 +59,10 @@ check:
 tidy-deep:
 	@tools/install_dependencies.sh build check
 	@tools/check_tidy.py --deep
+
+sanitize-all:
+	@tools/install_dependencies.sh build run test check
+	@tools/check_sanitize.sh --all
 
 bench:
 	@tools/install_dependencies.sh build bench
