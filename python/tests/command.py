@@ -2,18 +2,23 @@
 """The command beside the package, where the build has it."""
 import json
 import math
+import os
 import pathlib
 import subprocess
 import unittest
 
 COMMAND = pathlib.Path(__file__).resolve().parents[2] / "build" / "imukit"
 
+# The command is not made for the libraries that a sanitized extension needs from the beginning.
+ALONE = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
+
 
 def run(folder, *words):
     """Run the command in a folder; what it prints."""
     if not COMMAND.exists():
         raise unittest.SkipTest(f"{COMMAND} is not built")
-    done = subprocess.run([COMMAND, *map(str, words)], cwd=folder, capture_output=True, text=True)
+    done = subprocess.run([COMMAND, *map(str, words)], cwd=folder, env=ALONE,
+                          capture_output=True, text=True)
     return done.stdout
 
 

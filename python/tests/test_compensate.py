@@ -7,10 +7,10 @@ import subprocess
 import tempfile
 import unittest
 
+from command import ALONE, COMMAND
+
 import imukit
 
-ENVIRONMENT = {k: v for k, v in os.environ.items() if k != "LD_PRELOAD"}  # of sanitizers
-COMMAND = pathlib.Path(__file__).resolve().parents[2] / "build" / "imukit"
 
 
 def unit():
@@ -64,7 +64,7 @@ class Compensated(unittest.TestCase):
             for line in ("simulate unit.yaml --rate 50Hz --duration 100s -o raw.csv",
                          "compensate raw.csv unit.yaml --flags -o clean.csv"):
                 subprocess.run([COMMAND, *line.split()], cwd=folder, check=True,
-                               capture_output=True, env=ENVIRONMENT)
+                               capture_output=True, env=ALONE)
             due = imukit.read_log(folder / "clean.csv", any_columns=True)
             found = imukit.compensate(folder / "raw.csv", folder / "unit.yaml", flags=True)
         self.assertEqual(list(found), list(due))

@@ -8,7 +8,7 @@ import tempfile
 import unittest
 import warnings
 
-from command import COMMAND, command_json, python_json
+from command import ALONE, COMMAND, command_json, python_json
 
 import imukit
 
@@ -45,7 +45,8 @@ class Drive(unittest.TestCase):
         subprocess.run([COMMAND, "simulate", "unit.yaml", "--motion", "drive.yaml", "--rate", "50Hz",
                         "--seed", "4", "--truth", "truth.csv", "-o", "drive.csv", "--aid",
                         "position 1 1 2 m, velocity 0.05 m/s", "--aid-lever-arm", "1 -0.5 -1.5 m",
-                        "--aid-output", "gnss.csv"], cwd=at, check=True, capture_output=True)
+                        "--aid-output", "gnss.csv"], cwd=at, check=True,
+                       capture_output=True, env=ALONE)
         cls.truth = imukit.read_log(at / "truth.csv", any_columns=True)
 
     def setUp(self):

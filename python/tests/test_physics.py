@@ -10,17 +10,17 @@ import tempfile
 import unittest
 import warnings
 
+from command import ALONE, COMMAND
+
 import imukit
 from imukit import physics
 
-COMMAND = pathlib.Path(__file__).resolve().parents[2] / os.environ.get("BUILD", "build") / "imukit"
 
 
 def by_command(*words):
     if not COMMAND.exists():
         raise unittest.SkipTest("no command")
-    alone = {key: value for key, value in os.environ.items() if key != "LD_PRELOAD"}  # sanitizers
-    done = subprocess.run([COMMAND, "physics", *words, "--json"], check=True, text=True, env=alone,
+    done = subprocess.run([COMMAND, "physics", *words, "--json"], check=True, text=True, env=ALONE,
                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     return json.loads(done.stdout)
 

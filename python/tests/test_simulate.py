@@ -10,10 +10,10 @@ import tempfile
 import threading
 import unittest
 
+from command import ALONE, COMMAND
+
 import imukit
 
-ENVIRONMENT = {k: v for k, v in os.environ.items() if k != "LD_PRELOAD"}  # of sanitizers
-COMMAND = pathlib.Path(__file__).resolve().parents[2] / "build" / "imukit"
 CAR = """imukit_motion: 1
 start: {speed: 10 m/s}
 steps: [turn 90 deg at 10 deg/s, hold 2 s]
@@ -44,7 +44,7 @@ class AsTheCommand(unittest.TestCase):
             (folder / "car.yaml").write_text(CAR)
             subprocess.run([COMMAND, "simulate", model, *options.split(), "-o", "log.npy",
                             "--gyro-unit", "rad/s" if "increments" not in named else "rad"],
-                           cwd=folder, check=True, capture_output=True, env=ENVIRONMENT)
+                           cwd=folder, check=True, capture_output=True, env=ALONE)
             due = npy(folder / "log.npy")
             if "motion" in named:
                 named["motion"] = folder / named["motion"]
