@@ -3,7 +3,7 @@
 
     python3-dbg count_references.py [ROUNDS]
 
-Each example is run ROUNDS times (default 20) between two counts of all references and of all blocks
+Each example is run ROUNDS times (default 20, at least 12) between two counts of all references and of all blocks
 of memory. One that leaves a reference or a block behind each time is told, and fails. The extension
 must be compiled for the debug interpreter."""
 import contextlib
@@ -35,10 +35,10 @@ def counts():
 
 
 def left_behind(code, names, rounds):
-    """References and blocks that are more after `rounds` rounds: the least of three times, since
+    """References and blocks that are more after `rounds` rounds: the less of two times, since
     caches fill at some time or other."""
     least = [sys.maxsize] * 2
-    for _ in range(3):
+    for _ in range(2):
         before = counts()
         for _ in range(rounds):
             with contextlib.redirect_stdout(io.StringIO()):
