@@ -92,6 +92,7 @@ class Same(InFolder):
         self.assertEqual(two.channels[0].runs, 2)
 
 
+AT_REST = "imukit_motion: 1\nsteps: [hold 10 s]\n"
 FACES = [(9.8, 0, 0), (-9.8, 0, 0), (0, 9.8, 0), (0, -9.8, 0), (0, 0, 9.8), (0, 0, -9.8)]
 
 
@@ -133,6 +134,10 @@ class Calibrate(unittest.TestCase):
                    {"turn_angle": 1}, {"field": 5}, {"dip": 2}, {"reference_temperature": 300},
                    {"model": "no such part"}, {"into": "ADIS16488", "model": "ADIS16488"},
                    {"temperature_order": 77}, {"table_axis": "w"}, {"placement": -1},
+                   {"motion": imukit.Motion.parse(AT_REST)}, {"window": 2}, {"rate": 100},
+                   {"procedure": "turns", "pose_means": False, "turn_angle": -1},
+                   {"procedure": "ferraris", "pose_means": False, "estimator": "closed-form",
+                    "estimate": "bias"},
                    {"procedure": "rate-table"}, {"procedure": "repeatability"}]
         for named in refused:
             with self.subTest(named), self.assertRaises((ValueError, OSError)):
@@ -159,7 +164,8 @@ class Evaluate(unittest.TestCase):
                       {"full_scale": -1}, {"full_scale": "3 m"}, {"level_width": math.nan},
                       {"sensitivity": 3}, {"zero": 1}, {"confidence": 2}, {"motion_offset": 1},
                       {"motion": "no_such_file.yaml"}, {"static": [1.0, 2.0]}, {"gaps": "keep"},
-                      {"table_axis": "w"}):
+                      {"table_axis": "w"}, {"table_axis": "z"}, {"section": "run"}, {"trim": -1},
+                      {"minimum": 0}, {"motion": imukit.Motion.parse(AT_REST)}):
             with self.subTest(named), self.assertRaises((ValueError, OSError)):
                 imukit.evaluate(table, **named)
         for named in ({"unit": 5}, {"limit": 5}, {"motion": 5}, {"no": 1}, {"trim": []}):
