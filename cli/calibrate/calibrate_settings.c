@@ -208,20 +208,10 @@ static int assign_procedures(session *b)
     return -1;
 }
 
-/* Tables have neither times nor samples. */
+/* Tables of pose means are read from files with names, and have no rate. */
 static int check_means(const session *b)
 {
     const calibrate_options *o = b->options;
-    const imk_calibrate_log_settings *s = &o->settings;
-    const struct {
-        const char *name;
-        double value;
-    } times[] = {{"initial-rest", s->initial_rest},
-                 {"window", s->window},
-                 {"minimum", s->minimum},
-                 {"trim", s->trim},
-                 {"settle", s->settle},
-                 {"rate", o->log.file.rate}};
     bool tables = false, logs = b->settings.repeatability;
     for (size_t k = 0; k < b->count && !b->settings.repeatability; k++) {
         tables = tables || imk_procedure_takes_means(b->procedure[k]);
@@ -231,11 +221,9 @@ static int check_means(const session *b)
         return command_misused("--pose-means: %s needs a log, with every sample; only "
                                "multiposition, sixposition and tumble take tables of pose means",
                                o->procedure);
-    for (size_t k = 0; !logs && k < sizeof times / sizeof times[0]; k++)
-        if (times[k].value > 0)
-            return command_misused("--%s is of logs; a table of pose means has no times: leave it "
-                                   "out",
-                                   times[k].name);
+    if (!logs && o->log.file.rate > 0)
+        return command_misused("--rate is of logs; a table of pose means has no times: leave it "
+                               "out");
     if (o->log.file.axes)
         return command_misused("--axes does not go with --pose-means: name the columns in the "
                                "header by forward-right-down axes");
@@ -246,28 +234,14 @@ static int check_means(const session *b)
 static int check_used(const session *b)
 {
     const calibrate_options *o = b->options;
-    bool referenced = false, turns = false, thermal = false, compass = false;
-    for (size_t k = 0; k < b->count && !b->settings.repeatability; k++) {
-        const imk_procedure p = b->procedure[k];
-        turns = turns || p == IMK_PROCEDURE_TURNS;
-        thermal = thermal || p == IMK_PROCEDURE_THERMAL;
-        compass = compass || p == IMK_PROCEDURE_MAGNETOMETER;
-        referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
-                     p == IMK_PROCEDURE_CENTRIFUGE || p == IMK_PROCEDURE_SPIN;
-    }
-    if (o->motion && !referenced && !thermal)
-        return command_misused("--motion is not used by --procedure %s, only by rate-table, "
-                               "tumble, centrifuge, spin and thermal: leave it out",
-                               o->procedure);
+    bool compass = false;
+    for (size_t k = 0; k < b->count && !b->settings.repeatability; k++)
+        compass = compass || b->procedure[k] == IMK_PROCEDURE_MAGNETOMETER;
     if (o->motion_offset && !o->motion)
         return command_misused("--motion-offset is used with --motion only: add --motion");
     if (o->settings.estimate && compass)
         return command_misused("--estimate names terms of gyros and accelerometers; --procedure "
                                "magnetometer always estimates the same: leave one of them out");
-    if (turns && o->settings.turn_angle <= 0)
-        return command_misused("--turn-angle: with --procedure turns the angle is above 0; a label "
-                               "such as \"z -90deg\" states which way a turn goes, else each goes "
-                               "as its gyro reads");
     return o->settings.pose_means ? check_means(b) : -1;
 }
 
@@ -300,20 +274,29 @@ static int refused(const calibrate_options *o, const imk_error *error)
                                "stands in the housing; add a log of sixposition, ferraris, tumble "
                                "or rate-table, or choose upper-triangular, lower-triangular or "
                                "symmetric");
-    if (error->status != IMK_ERROR_CONFLICT || strncmp(error->expected, "only by", 7) != 0)
+    if (strcmp(error->field, "turn_angle") == 0 && error->status == IMK_ERROR_RANGE)
+        return command_misused("--turn-angle: expected %s", error->expected);
+    const bool of_means = strcmp(error->expected, "leave it out") == 0;
+    if (error->status != IMK_ERROR_CONFLICT ||
+        (!of_means && strncmp(error->expected, "only by", 7) != 0))
         return command_error(error, NULL);
     snprintf(name, sizeof name, "%s", error->field);
     for (char *c = name; *c; c++)
         *c = *c == '_' ? '-' : *c;
+    if (of_means)
+        return command_misused("--%s %s: leave it out", name, error->found);
     return command_misused("--%s is not used by --procedure %s, %s", name, o->procedure,
                            error->expected);
 }
 
 int session_choose(session *b)
 {
+    static const imk_motion unread = {
+        0}; /* until session_load(): it is only asked if there is one */
     const calibrate_options *o = b->options;
     imk_error error;
     b->settings = o->settings;
+    b->settings.motion = o->motion ? &unread : NULL;
     b->settings.closed_form = o->estimator != 0;
     b->settings.least_squares = o->robust != 0;
     b->settings.temperature_order = (int)o->temperature_order.value;

@@ -26,7 +26,6 @@ static int load_log(evaluation *v, const char *path)
     const calibrate_options *o = &v->options->session;
     imk_calibrate_record *record = command_zeroed(sizeof *record);
     imk_calibrate_log_settings settings = o->settings;
-    v->has_log = true;
     int code = session_motion(o, NULL, &v->motion, &settings);
     if (code < 0)
         code = session_read(o, &settings, path, record);

@@ -26,7 +26,6 @@ typedef struct evaluation {
     imk_evaluate_log *log;
     size_t limit_count;
     imk_evaluate_limit limit[IMK_EVALUATE_LIMITS];
-    bool has_log;            /* a file is one, and no table */
     bool missed;             /* a limit */
     imk_motion_file *motion; /* of --motion; NULL until a log asks for it */
 } evaluation;

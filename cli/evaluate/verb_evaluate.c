@@ -96,14 +96,10 @@ static bool in_counts(const imk_evaluate_channel *c)
 /* Options of counts and of logs mean nothing without them. */
 static int check_company(const evaluation *v)
 {
+    static const imk_motion unread = {0}; /* of --motion, which is read where a log asks for it */
     const evaluate_options *o = v->options;
-    const struct {
-        const char *name;
-        bool given;
-    } of_logs[] = {{"motion", o->session.motion != NULL},
-                   {"motion-offset", o->session.motion_offset != NULL},
-                   {"table-axis", o->session.settings.table_axis >= 0},
-                   {"section", o->session.settings.section != NULL}};
+    imk_calibrate_log_settings given = o->session.settings;
+    imk_error error;
     bool counts = false;
     for (size_t k = 0; k < v->log->channel_count; k++)
         counts = counts || in_counts(&v->log->channel[k]);
@@ -114,11 +110,12 @@ static int check_company(const evaluation *v)
         return command_misused("--zero is used with --sensitivity only: add --sensitivity");
     if (o->session.motion_offset && !o->session.motion)
         return command_misused("--motion-offset is used with --motion only: add --motion");
-    for (size_t k = 0; k < sizeof of_logs / sizeof of_logs[0]; k++)
-        if (of_logs[k].given && !v->has_log)
-            return command_misused("--%s is for logs, and all files are tables: leave it out",
-                                   of_logs[k].name);
-    return -1;
+    given.motion = o->session.motion ? &unread : NULL;
+    if (imk_evaluate_check_used(v->log, &given, &error) == IMK_OK)
+        return -1;
+    for (char *c = error.field; *c; c++)
+        *c = *c == '_' ? '-' : *c;
+    return command_misused("--%s %s: %s", error.field, error.found, error.expected);
 }
 
 /* Counts become what they stand for. */

@@ -29,6 +29,7 @@ IMK_API imk_evaluate_log_settings imk_evaluate_log_default(void);
 typedef struct imk_evaluate_log {
     imk_evaluate_log_settings settings;
     size_t run_count, channel_count, rest_count;
+    size_t record_count; /**< records of tests that were added; other runs are of tables */
     imk_evaluate_channel channel[IMK_EVALUATE_CHANNELS];
     imk_evaluate_rest rest[IMK_EVALUATE_CHANNELS];
     imk_findings findings;
@@ -39,7 +40,7 @@ typedef struct imk_evaluate_log {
 
 /** Begin an evaluation, without channels.
  *  @param job  its allocator is used; NULL: memory of the C library
- *  @return IMK_ERROR_UNINITIALISED, _MEMORY */
+ *  @return IMK_ERROR_UNINITIALISED, _RANGE (minimum, trim, settle), _MEMORY */
 IMK_API imk_status imk_evaluate_log_create(const imk_evaluate_log_settings *settings,
                                            const imk_job *job, imk_evaluate_log **result,
                                            imk_error *error);
@@ -83,6 +84,12 @@ IMK_API imk_status imk_evaluate_source(imk_evaluate_log *evaluation, const char 
 IMK_API imk_status imk_evaluate_rest_source(imk_evaluate_log *evaluation,
                                             const imk_record_source *source, imk_gap_policy gaps,
                                             const imk_job *job, imk_error *error);
+/** Refuse settings of records where all runs are of tables: section, motion, motion_offset,
+ *  find_offset, table_axis.
+ *  @return IMK_ERROR_CONFLICT (field) */
+IMK_API imk_status imk_evaluate_check_used(const imk_evaluate_log *evaluation,
+                                           const imk_calibrate_log_settings *settings,
+                                           imk_error *error);
 /** Compare all figures with limits (imk_evaluate_assess()).
  *  @param missed  number of figures beyond their limits, or not determined
  *  @return for a limit of no figure (error.index: which) IMK_ERROR_CONFLICT, or why its figure

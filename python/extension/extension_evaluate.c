@@ -228,6 +228,9 @@ static PyObject *finish(evaluation *v, PyObject *quantities)
     const Py_ssize_t end = PyList_Size(v->findings);
     const bool good = list && PyList_SetSlice(v->findings, end, end, list) == 0;
     Py_XDECREF(list);
+    imk_error error;
+    if (good && imk_evaluate_check_used(v->log, &v->reading, &error) != IMK_OK)
+        return raise_error(&error, NULL);
     return good && channels_run(v, quantities) && check_limits(v) ? evaluation_show(v) : NULL;
 }
 

@@ -66,7 +66,10 @@ class Same(InFolder):
                  "ADIS16488", "--position", "48.1 deg, 11.6 deg, 520 m", "--estimate", "accel.bias")
         self.same(result, *words)
         command.run(self.folder, *words, "-o", "into.yaml", "--anyway")
-        self.assertEqual(result.model or imukit.Model("into.yaml"), imukit.Model("into.yaml"))
+        self.assertEqual(imukit.calibrate(["bench1.csv", "bench2.csv"], "multiposition",
+                                          into="ADIS16488", position=("48.1 deg", "11.6 deg", 520),
+                                          estimate=["accel.bias"], anyway=True).model,
+                         imukit.Model("into.yaml"))
 
     def test_repeatability(self):
         models = []
@@ -92,6 +95,124 @@ class Same(InFolder):
         self.assertEqual(two.channels[0].runs, 2)
 
 
+def readings(k, true):
+    """What a unit with a few errors reads, as texts."""
+    return [f"{1.002 * v + 0.01 + 1e-4 * math.sin(7 * k + j * k * k)}" for j, v in enumerate(true)]
+
+
+def write_table(name, header, rows):
+    with open(name, "w", encoding="utf-8") as file:
+        file.write(f"time [s],{header}\n")
+        for k, row in enumerate(rows):
+            file.write(",".join(map(str, (k / 20, *row))) + "\n")
+
+
+def write_centrifuge(name):
+    forces = [[level if j == axis else 0.0 for j in range(3)] for axis in range(3)
+              for level in (-5, -2, 1, 3, 6) for _ in range(40)]
+    write_table(name, ",".join([f"accel_{a} [g]" for a in "xyz"]
+                               + [f"reference_force_{a} [g]" for a in "xyz"]),
+                ([*readings(k, force), *force] for k, force in enumerate(forces)))
+
+
+def write_compass(name):
+    heights = [1 - 2 * (k + 0.5) / 600 for k in range(600)]
+    fields = [(math.sqrt(1 - z * z) * math.cos(k / 7), math.sqrt(1 - z * z) * math.sin(k / 7), z)
+              for k, z in enumerate(heights)]
+    write_table(name, ",".join(f"mag_{a} [mG]" for a in "xyz"),
+                (readings(k, [480 * x for x in field]) for k, field in enumerate(fields)))
+
+
+def write_thermal(name):
+    degrees = [20 + 40 * math.sin(k / 1200) for k in range(4000)]
+    write_table(name, "gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],temperature [degC]",
+                ([*readings(k, (0, 0.01 * t, 0.01)), t] for k, t in enumerate(degrees)))
+
+
+def write_rate_table(name):
+    rates = [rate for rate in (0, 50, -50, 100, -100, 150, -150) for _ in range(40)]
+    write_table(name, "gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],table_rate [deg/s]",
+                ([*readings(k, (0, 0, rate)), rate] for k, rate in enumerate(rates)))
+
+
+TURNS = "imukit_motion: 1\nsteps: [hold 5 s, " + ", ".join(
+    f"rotate {axis} {angle} deg at 90 deg/s, hold 4 s" for angle in (360, -360)
+    for axis in "xyz") + "]\n"
+SPIN = ("imukit_motion: 1\nearth: no\nsteps: [hold 5 s, " + ", ".join(
+    f"rotate z {angle} deg at {rate} deg/s, hold 3 s"
+    for angle, rate in ((720, 90), (-720, 90), (720, 180), (-720, 180))) + "]\n")
+
+
+class Procedures(InFolder):
+    """Each procedure gives the numbers of the command, and gives some."""
+
+    def simulated(self, name, duration, text=None):
+        if text:
+            with open(f"{name}.yaml", "w", encoding="utf-8") as file:
+                file.write(text)
+        else:
+            command.run(self.folder, "calibrate", "--plan", "ADIS16488", "-p", name, "--rate",
+                        "20Hz", "-o", f"{name}.yaml")
+        command.run(self.folder, "simulate", "ADIS16488", "--motion", f"{name}.yaml", "--rate",
+                    "20Hz", "--duration", duration, "-o", f"{name}.csv")
+
+    def check(self, name, procedure, log=None, **named):
+        """Arguments as options: the same names and texts."""
+        log = log or f"{name}.csv"
+        words = [word for key, value in named.items() for word in
+                 ([f"--{key.replace('_', '-')}"] if value is True else
+                  [f"--{key.replace('_', '-')}", value])]
+        with self.subTest(procedure, **named):
+            result = imukit.calibrate(log, procedure, **named)
+            self.same(result, "calibrate", log, "-p", procedure, *words)
+            self.assertTrue(result.estimates or procedure in ("magnetometer", "repeatability"))
+            return result
+
+    def test_programmes(self):
+        for name, duration, with_motion in (("ferraris", "72s", False), ("tumble", "108s", True),
+                                            ("sixposition", "36s", False),
+                                            ("rate-table", "222s", True)):
+            self.simulated(name, duration)
+            self.check(name, name, **({"motion": f"{name}.yaml"} if with_motion else {}))
+        self.check("ferraris", "ferraris", estimator="closed-form")
+        self.check("tumble", "tumble", motion="tumble.yaml", motion_offset="auto")
+        draw = random.Random(2)
+        write_table("rest.csv", "gyro_z [deg/s]", ([draw.gauss(0, 0.1)] for _ in range(400)))
+        result = imukit.evaluate("rate-table.csv", motion="rate-table.yaml", static="rest.csv")
+        self.same(result, "evaluate", "rate-table.csv", "--motion", "rate-table.yaml", "--static",
+                  "rest.csv")
+        self.assertTrue(result.channels)
+
+    def test_turns_and_spin(self):
+        self.simulated("turns", "52s", TURNS)
+        self.check("turns", "turns", turn_angle="360 deg")
+        self.simulated("spin", "41s", SPIN)
+        self.check("spin", "spin", motion="spin.yaml", no_earth=True)
+
+    def test_references(self):
+        write_centrifuge("centrifuge.csv")
+        self.check("centrifuge", "centrifuge")
+        write_rate_table("table_rate.csv")
+        self.check("table_rate", "rate-table", table_axis="z", no_earth=True)
+        self.same(imukit.evaluate("table_rate.csv", table_axis="z"), "evaluate", "table_rate.csv",
+                  "--table-axis", "z")
+
+    def test_fields_and_temperatures(self):
+        write_compass("compass.csv")
+        self.assertTrue(self.check("compass", "magnetometer", field="48 uT").usable)
+        write_thermal("thermal.csv")
+        self.check("thermal", "thermal", temperature_order=2, reference_temperature="20 degC")
+        with self.assertRaises(imukit.Error):
+            imukit.calibrate("thermal.csv", "thermal", temperature_order=77)
+
+    def test_sections(self):
+        write_table("runs.csv", "gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],run",
+                    ([*readings(k, (0, 0, k // 300)), "abc"[k // 300]] for k in range(900)))
+        result = self.check("runs", "repeatability", section="run")
+        self.assertEqual(result.repeatability.runs, 3)
+
+
+AT_REST = "imukit_motion: 1\nsteps: [hold 10 s]\n"
 FACES = [(9.8, 0, 0), (-9.8, 0, 0), (0, 9.8, 0), (0, -9.8, 0), (0, 0, 9.8), (0, 0, -9.8)]
 
 
@@ -133,6 +254,10 @@ class Calibrate(unittest.TestCase):
                    {"turn_angle": 1}, {"field": 5}, {"dip": 2}, {"reference_temperature": 300},
                    {"model": "no such part"}, {"into": "ADIS16488", "model": "ADIS16488"},
                    {"temperature_order": 77}, {"table_axis": "w"}, {"placement": -1},
+                   {"motion": imukit.Motion.parse(AT_REST)}, {"window": 2}, {"rate": 100},
+                   {"procedure": "turns", "pose_means": False, "turn_angle": -1},
+                   {"procedure": "ferraris", "pose_means": False, "estimator": "closed-form",
+                    "estimate": "bias"},
                    {"procedure": "rate-table"}, {"procedure": "repeatability"}]
         for named in refused:
             with self.subTest(named), self.assertRaises((ValueError, OSError)):
@@ -159,7 +284,8 @@ class Evaluate(unittest.TestCase):
                       {"full_scale": -1}, {"full_scale": "3 m"}, {"level_width": math.nan},
                       {"sensitivity": 3}, {"zero": 1}, {"confidence": 2}, {"motion_offset": 1},
                       {"motion": "no_such_file.yaml"}, {"static": [1.0, 2.0]}, {"gaps": "keep"},
-                      {"table_axis": "w"}):
+                      {"table_axis": "w"}, {"table_axis": "z"}, {"section": "run"}, {"trim": -1},
+                      {"minimum": 0}, {"motion": imukit.Motion.parse(AT_REST)}):
             with self.subTest(named), self.assertRaises((ValueError, OSError)):
                 imukit.evaluate(table, **named)
         for named in ({"unit": 5}, {"limit": 5}, {"motion": 5}, {"no": 1}, {"trim": []}):

@@ -121,7 +121,7 @@ static void mistakes_are_answered(void **state)
     check_says("$I calibrate turns.csv -p turns", 0, "that at ");
     check_says("$I calibrate turns.csv -p turns", 0, "deg about z, not by 360 deg");
     check_says("$I calibrate turns.csv -p turns", 0, "turns uses the gyros only; ferraris");
-    check_says("$I calibrate turns.csv -p turns --turn-angle -360deg", 2, "the angle is above 0");
+    check_says("$I calibrate turns.csv -p turns --turn-angle -360deg", 2, "an angle above 0");
     check_says("$I calibrate turns.csv -p turns --turn-angle 700deg --strict", 1, "turns by 0.51");
     check_says("sed '1s#deg/s#rad/s#g' turns.csv >r.csv && $I calibrate r.csv -p turns", 1,
                "times as large as stated: the columns look like deg/s");

@@ -130,6 +130,60 @@ static void test_refusals(void **state)
     imk_evaluate_log_free(NULL);
 }
 
+/* A table is known by its columns; what is of records is then refused. A record needs a reference.
+ */
+static void test_sources(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"reference [deg/s]", "reading [V]"};
+    double reference[ROWS], reading[ROWS];
+    imk_array_source memory;
+    imk_record_source source;
+    imk_error error;
+    const imk_log table = table_of(reference, reading);
+    const double *data[] = {table.data[0], table.data[1]};
+    imk_calibrate_log_settings settings = imk_calibrate_log_default();
+    imk_evaluate_log *v = evaluation();
+    CHECK_OK(imk_array_source_make(2, names, data, ROWS, 1, &memory, &source, &error));
+    CHECK_OK(imk_evaluate_source(v, "table", &source, &settings, NULL, &error));
+    assert_int_equal(v->run_count, 1);
+    assert_int_equal(v->channel[0].count, ROWS);
+    CHECK_OK(imk_evaluate_check_used(v, &settings, &error));
+    settings.table_axis = 2;
+    CHECK_STATUS(imk_evaluate_check_used(v, &settings, &error), IMK_ERROR_CONFLICT);
+    assert_string_equal(error.field, "table_axis");
+    v->record_count = 1;
+    CHECK_OK(imk_evaluate_check_used(v, &settings, &error));
+
+    static const char *const sensor[] = {"gyro_z [deg/s]"};
+    double gyro[100];
+    for (int i = 0; i < 100; i++)
+        gyro[i] = i % 7;
+    data[0] = gyro;
+    settings.table_axis = -1;
+    CHECK_OK(imk_array_source_make(1, sensor, data, 100, 10, &memory, &source, &error));
+    CHECK_STATUS(imk_evaluate_source(v, "record", &source, &settings, NULL, &error),
+                 IMK_ERROR_KEY_MISSING);
+    assert_string_equal(imk_findings_failure(&v->findings)->code, "no_reference");
+    imk_evaluate_log_free(v);
+}
+
+static void test_times_refused(void **state)
+{
+    (void)state;
+    imk_error error;
+    imk_evaluate_log *v;
+    imk_evaluate_log_settings settings = imk_evaluate_log_default();
+    settings.minimum = 0;
+    CHECK_STATUS(imk_evaluate_log_create(&settings, NULL, &v, &error), IMK_ERROR_RANGE);
+    assert_string_equal(error.field, "minimum");
+    assert_null(v);
+    settings = imk_evaluate_log_default();
+    settings.settle = -1;
+    CHECK_STATUS(imk_evaluate_log_create(&settings, NULL, &v, &error), IMK_ERROR_RANGE);
+    assert_string_equal(error.field, "settle");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -137,6 +191,8 @@ int main(void)
         cmocka_unit_test(test_late_reference),
         cmocka_unit_test(test_reference_in_time),
         cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_sources),
+        cmocka_unit_test(test_times_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -163,6 +163,8 @@ static imk_status check_used(const imk_calibrate_log *b, imk_error *error)
     } settings[] = {
         {"field", !isnan(s->field), magnetic, "multiposition and magnetometer"},
         {"dip", !isnan(s->dip), magnetic, "multiposition and magnetometer"},
+        {"motion", s->motion != NULL, referenced || thermal,
+         "rate-table, tumble, centrifuge, spin and thermal"},
         {"table_axis", s->table_axis >= 0, referenced, "rate-table"},
         {"turn_angle", !isnan(s->turn_angle), turned, "ferraris and turns"},
         {"temperature_order", s->temperature_order != 0, thermal, "thermal"},
@@ -175,6 +177,64 @@ static imk_status check_used(const imk_calibrate_log *b, imk_error *error)
             return imk_error_set(error, IMK_ERROR_CONFLICT, settings[k].field,
                                  "not used by the procedures of these records", only);
         }
+    if (has[IMK_PROCEDURE_TURNS] && s->turn_angle <= 0)
+        return imki_refuse(error, IMK_ERROR_RANGE, "turn_angle", s->turn_angle, 0,
+                           "an angle above 0 with turns; a label such as \"z -90deg\" states which "
+                           "way a turn goes, else each goes as its gyro reads");
+    return IMK_OK;
+}
+
+/* Tables of means have no times; a log beside them may need them. */
+static imk_status check_means(const imk_calibrate_log *b, imk_error *error)
+{
+    const imk_calibrate_log_settings *s = &b->settings;
+    const struct {
+        const char *field;
+        double value;
+    } times[] = {{"initial_rest", s->initial_rest},
+                 {"window", s->window},
+                 {"minimum", s->minimum},
+                 {"trim", s->trim},
+                 {"settle", s->settle}};
+    bool tables = false, logs = s->repeatability;
+    for (size_t k = 0; k < b->count; k++) {
+        const bool means = imk_procedure_takes_means(b->record[k].procedure);
+        tables = tables || means;
+        logs = logs || !means;
+    }
+    if (!tables || s->repeatability)
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "pose_means",
+                             "these procedures need every sample",
+                             "only multiposition, sixposition and tumble take tables of means");
+    for (size_t k = 0; !logs && k < sizeof times / sizeof times[0]; k++)
+        if (!isnan(times[k].value))
+            return imk_error_set(error, IMK_ERROR_CONFLICT, times[k].field,
+                                 "is of logs; a table of pose means has no times", "leave it out");
+    return IMK_OK;
+}
+
+/* What is estimated must be left to choose. */
+static imk_status check_terms(const imk_calibrate_log *b, imk_error *error)
+{
+    const imk_calibrate_log_settings *s = &b->settings;
+    if (s->estimate && (s->with || s->without))
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate",
+                             "it names all terms to estimate",
+                             "leave out what is to be estimated with or without them");
+    for (size_t k = 0; s->estimate && k < b->count; k++)
+        if (b->record[k].procedure == IMK_PROCEDURE_MAGNETOMETER)
+            return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate",
+                                 "it names terms of gyros and accelerometers",
+                                 "leave it out with magnetometer, which always estimates the same");
+    if (s->closed_form &&
+        (b->count != 1 || b->record[0].procedure != IMK_PROCEDURE_FERRARIS || s->repeatability))
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "closed_form",
+                             "it solves one record of ferraris only",
+                             "use maximum likelihood for other procedures and for several records");
+    if (s->closed_form && (s->estimate || s->with || s->without))
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "closed_form",
+                             "it always finds the same terms",
+                             "leave out what is to be estimated, with them or without");
     return IMK_OK;
 }
 
@@ -199,33 +259,20 @@ imk_status imki_calibrate_set_up(imk_calibrate_log *b, const imk_procedure *proc
                                  imk_error *error)
 {
     const imk_calibrate_log_settings *s = &b->settings;
-    bool means = false;
+    imk_status status = IMK_OK;
     imk_calibration_default(b->calibration);
     b->calibration->robust = !s->least_squares;
     for (size_t k = 0; k < b->count; k++) {
         if ((int)procedure[k] < 0 || procedure[k] >= IMK_PROCEDURES)
             return imk_error_set(error, IMK_ERROR_RANGE, "procedure", NULL, NULL);
         b->record[k].procedure = procedure[k];
-        means = means || imk_procedure_takes_means(procedure[k]);
-        if (s->estimate && procedure[k] == IMK_PROCEDURE_MAGNETOMETER)
-            return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate",
-                                 "it names terms of gyros and accelerometers",
-                                 "leave it out with magnetometer, which always estimates the same");
     }
-    if (s->pose_means && (!means || s->repeatability))
-        return imk_error_set(error, IMK_ERROR_CONFLICT, "pose_means",
-                             "these procedures need every sample",
-                             "only multiposition, sixposition and tumble take tables of means");
-    if (s->estimate && (s->with || s->without))
-        return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate",
-                             "it names all terms to estimate",
-                             "leave out what is to be estimated with or without them");
-    if (s->closed_form &&
-        (b->count != 1 || procedure[0] != IMK_PROCEDURE_FERRARIS || s->repeatability))
-        return imk_error_set(error, IMK_ERROR_CONFLICT, "closed_form",
-                             "it solves one record of ferraris only",
-                             "use maximum likelihood for other procedures and for several records");
-    imk_status status = check_used(b, error);
+    if (s->pose_means)
+        status = check_means(b, error);
+    if (status == IMK_OK)
+        status = check_terms(b, error);
+    if (status == IMK_OK)
+        status = check_used(b, error);
     if (status == IMK_OK)
         status = check_numbers(s, error);
     if (status == IMK_OK)

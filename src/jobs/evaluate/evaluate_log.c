@@ -11,47 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const uint32_t settings_cookie = 0x45564131; /* "EVA1" */
-
-imk_evaluate_log_settings imk_evaluate_log_default(void)
-{
-    const double none = (double)NAN;
-    return (imk_evaluate_log_settings){.cookie = settings_cookie,
-                                       .confidence = 0.95,
-                                       .minimum = none,
-                                       .trim = none,
-                                       .settle = none};
-}
-
-imk_status imk_evaluate_log_create(const imk_evaluate_log_settings *settings, const imk_job *job,
-                                   imk_evaluate_log **result, imk_error *error)
-{
-    imki_arena arena = {.allocator = imki_job_of(job)->allocator};
-    *result = NULL;
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_evaluate_log_default()");
-    imk_evaluate_log *made = imki_arena_take(&arena, sizeof *made);
-    imki_arena *memory = imki_arena_take(&arena, sizeof *memory);
-    if (arena.failed) {
-        imki_arena_free(&arena);
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    }
-    *memory = arena;
-    made->settings = *settings;
-    made->memory = memory;
-    *result = made;
-    return IMK_OK;
-}
-
-void imk_evaluate_log_free(imk_evaluate_log *result)
-{
-    if (result) {
-        imki_arena memory = *(imki_arena *)result->memory;
-        imki_arena_free(&memory);
-    }
-}
-
 /* ---- channels -------------------------------------------------------------------------------- */
 
 /* The channel of this name, made when there is none. */
@@ -409,6 +368,7 @@ imk_status imk_evaluate_record(imk_evaluate_log *evaluation, const imk_calibrate
             if (record.reading[sensor][axis] != zero)
                 status = take_axis(v, &record, zero, sensor, axis, error);
     imki_arena_free(&scratch);
+    v->record_count++;
     v->run_count += v->settings.sections && record.section_count > 0 ? record.section_count : 1;
     if (status == IMK_OK && v->channel_count == 0)
         status = imki_fail(&v->findings, error, IMK_ERROR_EMPTY, "no_change", NULL, 0, NULL);

@@ -46,6 +46,24 @@ imk_status imk_evaluate_source(imk_evaluate_log *evaluation, const char *name,
     return status;
 }
 
+imk_status imk_evaluate_check_used(const imk_evaluate_log *evaluation,
+                                   const imk_calibrate_log_settings *settings, imk_error *error)
+{
+    const struct {
+        const char *field;
+        bool given;
+    } of_records[] = {{"motion", settings->motion != NULL},
+                      {"motion_offset", settings->find_offset || settings->motion_offset != 0},
+                      {"table_axis", settings->table_axis >= 0},
+                      {"section", settings->section != NULL}};
+    for (size_t k = 0; evaluation->record_count == 0 && k < sizeof of_records / sizeof *of_records;
+         k++)
+        if (of_records[k].given)
+            return imk_error_set(error, IMK_ERROR_CONFLICT, of_records[k].field,
+                                 "is for logs, and all files are tables", "leave it out");
+    return IMK_OK;
+}
+
 imk_status imk_evaluate_rest_source(imk_evaluate_log *evaluation, const imk_record_source *source,
                                     imk_gap_policy gaps, const imk_job *job, imk_error *error)
 {
