@@ -19,6 +19,7 @@ import os
 import pathlib
 import re
 import shlex
+import signal
 import subprocess
 import sys
 import tempfile
@@ -37,7 +38,8 @@ NO_LOGS = '-USHARED_DIRECTORY -DSHARED_DIRECTORY=\\"/absent\\"'
 
 
 def output(*words):
-    return subprocess.run(words, check=True, capture_output=True, text=True).stdout
+    quiet = {**os.environ, "LLVM_PROFILE_FILE": "/dev/null"}
+    return subprocess.run(words, check=True, capture_output=True, text=True, env=quiet).stdout
 
 
 def build():
@@ -61,7 +63,8 @@ def run(words):
     """Whether this succeeds, its processor time [s], and the places reached."""
     with tempfile.TemporaryDirectory() as folder:
         environment = {**ENVIRONMENT, "LLVM_PROFILE_FILE": f"{folder}/%m.profraw"}
-        timed = ["bash", "-c", 'TIMEFORMAT="%U %S"; time "$@" >/dev/null 2>&1', "-", *words]
+        timed = ["bash", "-c", 'TIMEFORMAT="%U %S"; time timeout 600 "$@" >/dev/null 2>&1', "-",
+                 *words]
         ran = subprocess.run(timed, env=environment, capture_output=True, text=True)
         profiles = [str(path) for path in pathlib.Path(folder).glob("*.profraw")]
         # What a case ends by a signal leaves no profile, or part of one.
@@ -149,6 +152,8 @@ def units(cases, results):
 
 def main():
     global PUBLIC, SOURCES
+    for number in [signal.SIGINT, signal.SIGQUIT]:  # a shell's background ignores them; tests do not
+        signal.signal(number, signal.SIG_DFL)
     build()
     PUBLIC, SOURCES = public_functions(), sources()
     apart, cases = programs()

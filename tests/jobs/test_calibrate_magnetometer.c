@@ -286,7 +286,6 @@ static void test_useless_scales(void **state)
                   {474, "T", "mG taken for uT", true},
                   {47.4, "mT", "T taken for mT, or mT taken for uT, or uT taken for nT", false},
                   {47.4, "uT", "T taken for uT, or mT taken for nT", false},
-                  {0.0474, "T", "T taken for mT, or mT taken for uT, or uT taken for nT", true},
                   {100, "T", "", false}};
     imk_calibrate_log_settings settings = usual();
     fill();
