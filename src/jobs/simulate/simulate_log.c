@@ -184,7 +184,7 @@ imk_status imk_simulated_rows_next(imk_simulated_rows *r, size_t most, double *c
     while (most > 0 && status == IMK_OK) {
         const uint64_t left = imk_simulated_rows_left(r);
         size_t count = most < step ? most : step;
-        double *at[COLUMNS_MAX];
+        double *at[COLUMNS_MAX] = {NULL};
         if (left < count)
             count = (size_t)left;
         if (count == 0)
