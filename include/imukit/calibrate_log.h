@@ -196,11 +196,12 @@ IMK_API imk_status imk_calibrate_logs(size_t count, const imk_calibrate_input *i
  *  @param procedure  of each record
  *  @param job        NULL: one thread, memory of the C library, no progress
  *  @return IMK_ERROR_RANGE ("count": 0, or more than IMK_TEST_RECORDS_MAX; "procedure"; "gravity",
- *          "latitude", "height", "field", "dip": value), IMK_ERROR_CONFLICT (a setting that no
- *          procedure looks at; "frame": gravity alone does not tell the reference frame;
- *          "closed_form": not one ferraris record; "estimate": with or without beside it, or a
- *          record of the procedure magnetometer; "pose_means": no record is of a procedure that
- *          takes them), _MEMORY */
+ *          "latitude", "height", "field", "dip": value; "turn_angle": not above 0 with turns),
+ *          IMK_ERROR_CONFLICT (a setting that no procedure looks at, or a time where all are
+ *          tables of means; "frame": gravity alone does not tell the reference frame;
+ *          "closed_form": not one ferraris record, or terms are chosen; "estimate": with or
+ *          without beside it, or a record of the procedure magnetometer; "pose_means": no record
+ *          is of a procedure that takes them), _MEMORY */
 IMK_API imk_status imk_calibrate_log_create(size_t count, const imk_procedure *procedure,
                                             const imk_calibrate_log_settings *settings,
                                             const imk_job *job, imk_calibrate_log **session,
