@@ -50,8 +50,10 @@ bool told_finding(imk_finding_level level, const char *code, const char *message
         if (strcmp(findings[i].code, code) == 0 && strcmp(findings[i].message, message) == 0)
             return false;
     findings = command_memory(findings, (finding_count + 1) * sizeof *findings);
-    findings[finding_count++] =
+    /* Where memory ends here, what was told before is shown: the list grows at last. */
+    findings[finding_count] =
         (told){.level = level, .code = copy_of(code), .message = copy_of(message)};
+    finding_count++;
     return true;
 }
 
