@@ -20,7 +20,8 @@ function test_gateway (build, shared)
     test_simulate ();
     test_warnings ();
     test_help ();
-    test_refusals ();
+    test_increments ();
+  test_refusals ();
     test_nothing_left ();
   unwind_protect_cleanup
     cd (here);
@@ -233,6 +234,14 @@ function refused (message, id, varargin)
     return
   end
   error ('nothing refused: %s', message);
+end
+
+function test_increments ()
+  rest = {'AHRS', 'rate', 100, 'duration', 1, 'seed', 3};
+  rates = imukit_simulate (rest{:});
+  increments = imukit_simulate (rest{:}, 'increments', true);
+  assert (increments.columns{2}, 'dtheta_x [rad]');
+  assert (increments.data(:, 2:7), rates.data(:, 2:7) / 100, -1e-12);
 end
 
 function test_refusals ()
