@@ -26,10 +26,19 @@ def of_buffer(buffer: Any) -> Array:
     return numpy.asarray(buffer) if numpy is not None else memoryview(buffer)
 
 
-def of_array(values: Any) -> Any:
-    """An array of NumPy of what can become one, such as a column of a table."""
+def of_numeric(values: Any, name: str) -> Any:
+    """An array of NumPy of what can become one, such as a column of a table. What is masked is NaN.
+
+    Raises TypeError, which begins with the name, for what is no real number.
+    """
     import numpy as found
-    return found.asarray(values)
+    made = found.asanyarray(values)
+    if made.dtype.kind not in "biuf" or made.dtype.itemsize > 8:
+        raise TypeError(f"{name}: items of the type {made.dtype} are no numbers that imukit reads: "
+                        "convert them to float64")
+    if isinstance(made, found.ma.MaskedArray):
+        return made.astype(float).filled(math.nan)
+    return made.astype(float) if made.dtype == found.float16 else found.asarray(made)
 
 
 def of_bytes(numbers: bytes, columns: int = 1, column: int = 0) -> Array:

@@ -247,7 +247,7 @@ def drift(models: ModelLike | Sequence[ModelLike], motion: Any = None, *,
     runs         also simulate and navigate so many runs of the last model, without linearising
     seed         of the runs
     threads      0: one per processor; the results do not depend on it
-    progress     called with (stage, unit, done, total); False ends the work
+    progress     called with (stage, unit, done, total); a false value but None ends the work
 
     Raises imukit.Error: a model that is not whole, times beyond the motion, a text that cannot be
     read; ValueError: arguments that exclude each other. Source: include/imukit/drift_models.h,

@@ -96,7 +96,7 @@ def read_log(path: str | os.PathLike[str], *, rate: float | str | None = None,
     axes         directions of the log's axes, "right-forward-up", mapped to forward-right-down
     after, before  leave out what is before, or after, this time from the start [s]
     any_columns  also accept a table without time and sensors
-    progress     called with (stage, unit, done, total); False ends the work
+    progress     called with (stage, unit, done, total); a false value but None ends the work
 
     Raises imukit.Error, imukit.FileError: the message ends with the option to add. Source:
     include/imukit/log.h.

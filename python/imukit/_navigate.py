@@ -173,7 +173,7 @@ def navigate(data: Data, model: ModelLike | None = None, *, position: Numbers,
     aid_delay    the readings are older than their times say by this [s]
     aid_interval use at most one reading per this time [s]; 0: all
     aid_until    later readings are only compared; from the start of the log [s]
-    progress     called with (stage, unit, done, total); False ends the work
+    progress     called with (stage, unit, done, total); a false value but None ends the work
     log          options for reading a log: see read_log()
 
     Raises imukit.Error: columns that are missing, a log that is too short for the alignment, an
