@@ -59,6 +59,13 @@ def of_matrix(numbers: bytes, columns: int, which: range, shape: tuple[int, ...]
     return memoryview(made).cast("B").cast("d", (rows, *shape))
 
 
+def equal(a: Array, b: Array) -> bool:
+    """Are two vectors equal? NaN is equal to NaN."""
+    if numpy is not None:
+        return bool(numpy.array_equal(a, b, equal_nan=True))
+    return len(a) == len(b) and all(x == y or x != x and y != y for x, y in zip(a, b))
+
+
 def empty(rows: int) -> Array:
     """A vector to be written."""
     if numpy is not None:

@@ -2,6 +2,7 @@
 """Logs in memory."""
 from __future__ import annotations
 
+import array
 import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -50,6 +51,24 @@ class Log(Mapping[str, Any]):
     def __repr__(self) -> str:
         columns = ", ".join(f"{name} [{self.written_units[name]}]" for name in self)
         return f"{self.path}: {self.rows} rows at {self.rate:.6g} Hz: {columns}"
+
+    def __eq__(self, other: object) -> bool:
+        """Equal names, units and numbers; NaN is equal to NaN."""
+        if not isinstance(other, Log):
+            return NotImplemented
+        return list(self.units.items()) == list(other.units.items()) and all(
+            _arrays.equal(self[name], other[name]) for name in self)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __getstate__(self) -> dict[str, Any]:
+        numbers = {name: memoryview(column).tobytes() for name, column in self._columns.items()}
+        return {**self.__dict__, "_columns": numbers}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._columns = {name: array.array("d", numbers)
+                         for name, numbers in state["_columns"].items()}
 
     def _imukit_columns(self) -> tuple[list[str], list[Any]]:
         names = [f"{name} [{unit}]" if unit else name for name, unit in self.units.items()]
