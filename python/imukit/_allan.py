@@ -12,7 +12,7 @@ from ._results import Result, tell
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class AllanCurve:
+class AllanCurve(_arrays.Vectors):
     """Deviations of one channel over the averaging time: vectors of equal length."""
 
     name: str

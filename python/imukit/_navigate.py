@@ -16,7 +16,7 @@ _VERDICTS = ("used", "recovered", "refused", "compared")
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Track:
+class Track(_arrays.Vectors):
     """The track of a unit: vectors of equal length. The sigmas are 1 sigma of what is computed, by
     the model; None without one."""
 
@@ -73,7 +73,7 @@ class Track:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Innovations:
+class Innovations(_arrays.Vectors):
     """What the readings of one aid were off the estimate, divided by the 1 sigma due: vectors of
     equal length."""
 

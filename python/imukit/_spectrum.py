@@ -13,7 +13,7 @@ from ._results import Result, tell
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class SpectrumCurve:
+class SpectrumCurve(_arrays.Vectors):
     """Density of one channel, 100 bands per decade: vectors of equal length."""
 
     name: str

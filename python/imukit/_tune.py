@@ -16,7 +16,7 @@ _ANSWERS = ("data_sheet", "data_sheet_x10", "fit", "safe", "fit_scale_factors",
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class FilterAnswer:
+class FilterAnswer(_arrays.Vectors):
     """Numbers of a filter, two-sided densities, and how consistent it is over the time between its
     updates. Triples are of the axes x, y, z."""
 

@@ -59,6 +59,26 @@ class Results(unittest.TestCase):
                     result.save(path)
                 self.assertFalse(path.exists())
 
+    def test_curves(self):
+        x = [float(k * k % 101) for k in range(600)]
+        for curve in (imukit.allan(x, 1).curve(), imukit.spectrum(x, 1).curve()):
+            for made in copies(curve):
+                self.assertEqual(repr(type(made)), repr(type(curve)))
+                self.assertEqual(list(made.lower), list(curve.lower))
+                self.assertEqual(made.name, curve.name)
+
+
+class Others(unittest.TestCase):
+    def test_motion(self):
+        for copied in pickle.dumps, copy.copy, copy.deepcopy:
+            with self.assertRaisesRegex(TypeError, "make another"):
+                copied(imukit.Motion.at_rest())
+
+    def test_closed_blocks(self):
+        with imukit.simulate_blocks("tactical", 100, rows=10) as blocks:
+            self.assertEqual(next(blocks).rows, 10)
+        self.assertEqual(list(blocks), [])
+
 
 if __name__ == "__main__":
     unittest.main()
