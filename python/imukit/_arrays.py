@@ -38,7 +38,7 @@ def of_numeric(values: Any, name: str) -> Any:
         raise TypeError(f"{name}: items of the type {made.dtype} are no numbers that imukit reads: "
                         "convert them to float64")
     if isinstance(made, found.ma.MaskedArray):
-        return made.astype(float).filled(math.nan)
+        return found.ma.filled(made.astype(float), math.nan)
     return made.astype(float) if made.dtype == found.float16 else found.asarray(made)
 
 
