@@ -18,6 +18,11 @@ bool quantity_read(PyObject *object, const char *name, const char *unit, double 
     imk_error error;
     double sigma;
     size_t count;
+    if (PyBool_Check(object)) {
+        PyErr_Format(PyExc_TypeError, "%s=%R: expected a number, or a text with a unit", name,
+                     object);
+        return false;
+    }
     if (!PyUnicode_Check(object)) {
         *value = PyFloat_AsDouble(object);
         return !PyErr_Occurred();
@@ -75,6 +80,17 @@ static bool whole_read(PyObject *object, const setting *row, long long least, lo
     return false;
 }
 
+/* True, False, or a number that is 1 or 0, such as a bool of NumPy. */
+static bool flag_read(PyObject *object, const char *name, bool *value)
+{
+    *value = PyObject_RichCompareBool(object, Py_True, Py_EQ) == 1;
+    if (*value || PyObject_RichCompareBool(object, Py_False, Py_EQ) == 1)
+        return true;
+    if (!PyErr_Occurred())
+        PyErr_Format(PyExc_TypeError, "%s=%R: expected True or False", name, object);
+    return false;
+}
+
 static bool value_read(PyObject *object, const setting *row, void *at)
 {
     long long whole;
@@ -85,8 +101,7 @@ static bool value_read(PyObject *object, const setting *row, void *at)
     case SETTING_QUANTITY:
         return quantity_read(object, row->name, row->words, at);
     case SETTING_FLAG:
-        *(bool *)at = PyObject_IsTrue(object) == 1;
-        return !PyErr_Occurred();
+        return flag_read(object, row->name, at);
     case SETTING_INT:
         if (!whole_read(object, row, -2147483647, &whole) || whole > 2147483647)
             break;

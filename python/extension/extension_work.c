@@ -21,7 +21,7 @@ static bool ask(work *w, const char *stage, const char *unit, uint64_t done, uin
     if (go && w->progress) {
         PyObject *said = PyObject_CallFunction(w->progress, "ssKK", stage, unit,
                                                (unsigned long long)done, (unsigned long long)total);
-        go = said && said != Py_False;
+        go = said == Py_None || (said && PyObject_IsTrue(said) == 1);
         Py_XDECREF(said);
     }
     if (PyErr_Occurred()) {

@@ -7,12 +7,12 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from . import _arrays, _core
-from ._inputs import Data, open_record
+from ._inputs import Data, _column, open_record
 from ._results import Result, tell
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class AllanCurve:
+class AllanCurve(_arrays.Vectors):
     """Deviations of one channel over the averaging time: vectors of equal length."""
 
     name: str
@@ -74,6 +74,15 @@ def _curve(channel: dict[str, Any]) -> AllanCurve:
                       tuple(p["noise"] for p in points))
 
 
+def _times(tau: Any) -> list[Any]:
+    """Averaging times as one column; a single number is a list of one."""
+    times = [float(tau)] if isinstance(tau, (int, float)) else tau
+    column = _column(times, "tau")
+    if any(not a < b for a, b in zip(column, column[1:])):
+        raise ValueError("tau: the times must ascend")
+    return [column]
+
+
 def allan(data: Data, rate: float | str | None = None, *,
           statistic: str | Sequence[str] = "oadev",
           tau: str | Sequence[float] = "octave", columns: str | Sequence[str] | None = None,
@@ -96,7 +105,7 @@ def allan(data: Data, rate: float | str | None = None, *,
     bias        of totdev, mtot, htot and theo1: 'removed', 'published' or 'left'
     gaps        rows that are missing: 'keep', 'bridge', 'longest' or 'refuse'
     threads     0: one per processor
-    progress    called with (stage, unit, done, total); False ends the work
+    progress    called with (stage, unit, done, total); a false value but None ends the work
     log         options for reading a log: see read_log()
 
     Raises imukit.Error: the record is too short or constant, a statistic needs every sample, an
@@ -114,6 +123,7 @@ def allan(data: Data, rate: float | str | None = None, *,
         names = ("oadev", "adev", "mdev", "tdev", "ohdev", "hdev", "totdev", "mtot", "htot",
                  "theo1", "pdev", "haar")
     grid = tau if isinstance(tau, str) else None
+    times = None if grid else _times(tau)
     if kind not in ("rate", "phase"):
         raise ValueError(f"kind={kind!r}: expected 'rate' or 'phase'")
     if edf not in ("exact", "greenhall-riley"):
@@ -121,7 +131,7 @@ def allan(data: Data, rate: float | str | None = None, *,
     settings = {"gaps": gaps, "phase": kind == "phase", "confidence": confidence, "bias": bias,
                 "greenhall_riley": edf == "greenhall-riley", "grid": grid}
     record = open_record(data, rate, columns, log)
-    result = AllanResult(*_core.allan(record, names, None if grid else [tau], settings, threads,
+    result = AllanResult(*_core.allan(record, names, times, settings, threads,
                                       progress))
     tell(result)
     return result

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import array
+import dataclasses
 import math
-from typing import Any, Iterable
+from typing import Any, Iterable, NamedTuple
 
 try:
     import numpy
@@ -26,10 +27,19 @@ def of_buffer(buffer: Any) -> Array:
     return numpy.asarray(buffer) if numpy is not None else memoryview(buffer)
 
 
-def of_array(values: Any) -> Any:
-    """An array of NumPy of what can become one, such as a column of a table."""
+def of_numeric(values: Any, name: str) -> Any:
+    """An array of NumPy of what can become one, such as a column of a table. What is masked is NaN.
+
+    Raises TypeError, which begins with the name, for what is no real number.
+    """
     import numpy as found
-    return found.asarray(values)
+    made: Any = found.asanyarray(values)
+    if made.dtype.kind not in "biuf" or made.dtype.itemsize > 8:
+        raise TypeError(f"{name}: items of the type {made.dtype} are no numbers that imukit reads: "
+                        "convert them to float64")
+    if isinstance(made, found.ma.MaskedArray):
+        return found.ma.filled(made.astype(float), math.nan)
+    return made.astype(float) if made.dtype == found.float16 else found.asarray(made)
 
 
 def of_bytes(numbers: bytes, columns: int = 1, column: int = 0) -> Array:
@@ -48,6 +58,43 @@ def of_matrix(numbers: bytes, columns: int, which: range, shape: tuple[int, ...]
     for row in range(rows):
         made.extend(view[row * columns + which.start:row * columns + which.stop:which.step])
     return memoryview(made).cast("B").cast("d", (rows, *shape))
+
+
+class Vectors:
+    """Base of dataclasses with arrays as fields: they can be pickled and copied without NumPy, too."""
+
+    __slots__ = ()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        values = [getattr(self, field.name) for field in dataclasses.fields(self)]
+        return _vectors, (type(self), [_Kept.of(x) if isinstance(x, memoryview) else x
+                                       for x in values])
+
+
+class _Kept(NamedTuple):
+    """The numbers of a memoryview."""
+
+    numbers: bytes
+    shape: tuple[int, ...]
+
+    @classmethod
+    def of(cls, view: memoryview) -> _Kept:
+        return cls(view.tobytes(), view.shape or ())
+
+    def view(self) -> Array:
+        flat = memoryview(array.array("d", self.numbers))
+        return flat if len(self.shape) == 1 else flat.cast("B").cast("d", self.shape)
+
+
+def _vectors(kind: Any, values: list[Any]) -> Any:
+    return kind(*(x.view() if isinstance(x, _Kept) else x for x in values))
+
+
+def equal(a: Array, b: Array) -> bool:
+    """Are two vectors equal? NaN is equal to NaN."""
+    if numpy is not None:
+        return bool(numpy.array_equal(a, b, equal_nan=True))
+    return len(a) == len(b) and all(x == y or x != x and y != y for x, y in zip(a, b))
 
 
 def empty(rows: int) -> Array:

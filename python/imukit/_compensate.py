@@ -46,7 +46,7 @@ def compensate(data: Data, model: Model | str | os.PathLike[str] | Mapping[str, 
     only, without  terms of the model, such as "gyro.bias" or ("bias", "scale_factor")
     columns      names of the columns, with units in brackets ("gyro_x [deg/s]"); without, SI
     threads      0: one per processor
-    progress     called with (stage, unit, done, total); False ends the work
+    progress     called with (stage, unit, done, total); a false value but None ends the work
     log          options for reading a log: see read_log()
 
     The columns of gyros and accelerometers become angular rate [rad/s] and specific force [m/s^2]
@@ -98,7 +98,7 @@ def convert(data: Data, rate: float | str | None = None, *,
     yaw           heading at the start, from north to east [rad]
     columns       names of the columns, with units in brackets ("gyro_x [deg/s]"); without, SI
     threads       0: one per processor
-    progress      called with (stage, unit, done, total); False ends the work
+    progress      called with (stage, unit, done, total); a false value but None ends the work
     log           options for reading a log: see read_log()
 
     Raises imukit.Error. Source: include/imukit/convert_log.h.

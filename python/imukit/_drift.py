@@ -20,7 +20,7 @@ _STATES = ("position_north", "position_east", "position_down", "velocity_north",
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class DriftGrowth:
+class DriftGrowth(_arrays.Vectors):
     """Figures of the error of a model, or of one of its terms, against time: vectors of equal
     length. Radii and root mean squares, means included."""
 
@@ -56,7 +56,7 @@ class DriftGrowth:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class DriftMoments:
+class DriftMoments(_arrays.Vectors):
     """Mean and covariance of the nine errors against time: position [m], velocity [m/s] and
     attitude [rad], each north, east, down."""
 
@@ -87,7 +87,7 @@ class DriftShare:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class DriftRuns:
+class DriftRuns(_arrays.Vectors):
     """Errors of the runs, estimate minus truth, at the times of the table: matrices with a row for
     each run and a column for each time. NaN after a run has left the Earth's surroundings."""
 
@@ -247,7 +247,7 @@ def drift(models: ModelLike | Sequence[ModelLike], motion: Any = None, *,
     runs         also simulate and navigate so many runs of the last model, without linearising
     seed         of the runs
     threads      0: one per processor; the results do not depend on it
-    progress     called with (stage, unit, done, total); False ends the work
+    progress     called with (stage, unit, done, total); a false value but None ends the work
 
     Raises imukit.Error: a model that is not whole, times beyond the motion, a text that cannot be
     read; ValueError: arguments that exclude each other. Source: include/imukit/drift_models.h,

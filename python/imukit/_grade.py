@@ -24,7 +24,7 @@ def grade(models: ModelLike | Sequence[ModelLike], *, map: str = "all",
     assume_class  typical values for terms that are not stated: 'own', or 'strategic', 'navigation',
                   'tactical', 'AHRS', 'control'
     threads       0: one per processor
-    progress      called with (stage, unit, done, total); False ends the work
+    progress      called with (stage, unit, done, total); a false value but None ends the work
 
     Raises imukit.Error: a model that states nothing to grade. Source:
     include/imukit/grade_position.h; the fields of the result: docs/json.md.

@@ -88,7 +88,7 @@ def identify(data: Data, rate: float | str | None = None, *,
     twin, seed    simulate the model over the length of the record, for the figure
     verbose       the text has the messages of the verdict with all details, as the page
     threads       0: one per processor
-    progress      called with (stage, unit, done, total); False ends the work
+    progress      called with (stage, unit, done, total); a false value but None ends the work
     log           options for reading a log: see read_log()
 
     Raises imukit.Error: the record is too short, constant, or its times are not equally spaced; the

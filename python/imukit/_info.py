@@ -39,7 +39,7 @@ def info(data: Data, rate: float | str | None = None, *,
     columns   names of the columns, with units in brackets ("gyro_x [deg/s]"); without, SI
     full      read every row of a long log, too; else about 64 MB of it are read, and what follows
               from these only is marked
-    progress  called with (stage, unit, done, total); False ends the work
+    progress  called with (stage, unit, done, total); a false value but None ends the work
     log       options for reading a log: see read_log()
 
     A log of which units, times or names are missing is shown in its own numbers, and a warning

@@ -44,7 +44,7 @@ def open_record(data: Data, rate: float | str | None, columns: str | Sequence[st
     elif isinstance(data, Mapping) or hasattr(data, "to_numpy") and hasattr(data, "columns"):
         names = [str(name) for name in data] if isinstance(data, Mapping) else \
             [str(name) for name in data.columns]
-        arrays = [_column(data[name]) for name in data]
+        arrays = [_column(data[name], f"column {name!r}") for name in data]
     else:
         names, arrays = None, _columns(data)
     if columns is not None:
@@ -76,26 +76,45 @@ def _count(arrays: Any) -> int:
     return shape[1] if len(shape) == 2 else 1
 
 
-def _column(values: Any) -> Any:
-    """A vector: as it is where it has the buffer protocol or is a sequence."""
+def _column(values: Any, name: str = "data") -> Any:
+    """A vector: as it is where it has the buffer protocol or is a sequence. What is masked is NaN.
+
+    name  in messages
+    """
+    if values is None or isinstance(values, (str, bytes, bytearray, int, float)):
+        hint = " (a path is a str or a PathLike)" if isinstance(values, (bytes, bytearray)) else ""
+        raise TypeError(f"{name}: expected a vector of numbers, not {type(values).__name__}{hint}")
+    if hasattr(values, "__array__") and not isinstance(values, memoryview):
+        return _arrays.of_numeric(values, name)
     try:
         memoryview(values)
     except TypeError:
-        if hasattr(values, "__array__"):
-            return _arrays.of_array(values)
-        if not isinstance(values, Sequence) or isinstance(values, (str, bytes)):
-            values = list(values)
+        if not isinstance(values, Sequence):
+            try:
+                values = list(values)
+            except TypeError:
+                raise TypeError(f"{name}: expected a vector of numbers, not "
+                                f"{type(values).__name__}") from None
+        for place, value in enumerate(values):
+            if value is None or isinstance(value, (str, bytes)):
+                raise TypeError(f"{name}: item {place} is {type(value).__name__}, not a number; "
+                                "NaN is a missing sample") from None
     return values
 
 
 def _columns(data: Any) -> Any:
     """A vector or matrix with the buffer protocol, or a list of vectors."""
+    if isinstance(data, Sequence) and not isinstance(data, (str, bytes, bytearray, memoryview)) \
+            and any(_is_vector(x) for x in data):
+        return [_column(column, f"column {k + 1}") for k, column in enumerate(data)]
     data = _column(data)
     try:
         memoryview(data)
-        return data
     except TypeError:
-        pass
-    if all(isinstance(x, (int, float)) for x in data):
         return [data]
-    return [_column(column) for column in data]
+    return data
+
+
+def _is_vector(value: Any) -> bool:
+    return hasattr(value, "__len__") and not isinstance(value, (str, bytes)) and \
+        getattr(value, "ndim", 1) > 0

@@ -2,6 +2,7 @@
 """Logs in memory."""
 from __future__ import annotations
 
+import array
 import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -51,6 +52,24 @@ class Log(Mapping[str, Any]):
         columns = ", ".join(f"{name} [{self.written_units[name]}]" for name in self)
         return f"{self.path}: {self.rows} rows at {self.rate:.6g} Hz: {columns}"
 
+    def __eq__(self, other: object) -> bool:
+        """Equal names, units and numbers; NaN is equal to NaN."""
+        if not isinstance(other, Log):
+            return NotImplemented
+        return list(self.units.items()) == list(other.units.items()) and all(
+            _arrays.equal(self[name], other[name]) for name in self)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __getstate__(self) -> dict[str, Any]:
+        numbers = {name: memoryview(column).tobytes() for name, column in self._columns.items()}
+        return {**self.__dict__, "_columns": numbers}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._columns = {name: array.array("d", numbers)
+                         for name, numbers in state["_columns"].items()}
+
     def _imukit_columns(self) -> tuple[list[str], list[Any]]:
         names = [f"{name} [{unit}]" if unit else name for name, unit in self.units.items()]
         return names, list(self._columns.values())
@@ -96,7 +115,7 @@ def read_log(path: str | os.PathLike[str], *, rate: float | str | None = None,
     axes         directions of the log's axes, "right-forward-up", mapped to forward-right-down
     after, before  leave out what is before, or after, this time from the start [s]
     any_columns  also accept a table without time and sensors
-    progress     called with (stage, unit, done, total); False ends the work
+    progress     called with (stage, unit, done, total); a false value but None ends the work
 
     Raises imukit.Error, imukit.FileError: the message ends with the option to add. Source:
     include/imukit/log.h.

@@ -105,6 +105,9 @@ class Motion:
         from ._simulate import simulate_truth  # which needs this module
         return simulate_truth(rate, duration, self, threads=threads)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError("a Motion cannot be pickled or copied: make another of its source")
+
     def __repr__(self) -> str:
         return f"Motion: {self.kind} of {self.duration:g} s"
 

@@ -16,7 +16,7 @@ _VERDICTS = ("used", "recovered", "refused", "compared")
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Track:
+class Track(_arrays.Vectors):
     """The track of a unit: vectors of equal length. The sigmas are 1 sigma of what is computed, by
     the model; None without one."""
 
@@ -73,7 +73,7 @@ class Track:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Innovations:
+class Innovations(_arrays.Vectors):
     """What the readings of one aid were off the estimate, divided by the 1 sigma due: vectors of
     equal length."""
 
@@ -173,7 +173,7 @@ def navigate(data: Data, model: ModelLike | None = None, *, position: Numbers,
     aid_delay    the readings are older than their times say by this [s]
     aid_interval use at most one reading per this time [s]; 0: all
     aid_until    later readings are only compared; from the start of the log [s]
-    progress     called with (stage, unit, done, total); False ends the work
+    progress     called with (stage, unit, done, total); a false value but None ends the work
     log          options for reading a log: see read_log()
 
     Raises imukit.Error: columns that are missing, a log that is too short for the alignment, an

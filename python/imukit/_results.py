@@ -146,6 +146,8 @@ class Result:
         name = os.fspath(path)
         kind = os.path.splitext(name)[1]
         text: str | None = str(self)
+        if kind in (".png", ".pdf"):
+            raise ValueError(f"{name}: figures are written as .svg, pages as .html")
         if kind == ".html":
             text = self.page()
         elif kind == ".svg":
@@ -180,6 +182,20 @@ class Result:
     def _repr_html_(self) -> str:
         figure = self.figure() or ""
         return f"{figure}<pre>{html.escape(repr(self))}</pre>"
+
+    def __eq__(self, other: object) -> bool:
+        """Equal data."""
+        if not isinstance(other, Result):
+            return NotImplemented
+        return type(self) is type(other) and \
+            json.dumps(self._data) == json.dumps(other._data)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __copy__(self) -> Result:
+        made = type(self).__new__(type(self))
+        made.__dict__.update(self.__dict__)
+        return made
 
     def __getstate__(self) -> dict[str, Any]:
         str(self)

@@ -175,6 +175,7 @@ class Blocks(Iterator[Log]):
 
     def __init__(self, begun: _Run, rows: int, threads: int) -> None:
         self._run, self._rows, self._threads = begun, rows, threads
+        self._closed = False
         self.units = {name: unit for name, _, unit in begun.columns}
         """SI unit of each column"""
         self.rate = begun.rate
@@ -185,8 +186,18 @@ class Blocks(Iterator[Log]):
         """Rows to come, those that are lost included; None: without end."""
         return self._run.left
 
+    def close(self) -> None:
+        """End: no block comes any more. Done at the end of a `with` statement."""
+        self._closed = True
+
+    def __enter__(self) -> Blocks:
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self.close()
+
     def __next__(self) -> Log:
-        while (left := self._run.left) != 0:
+        while not self._closed and (left := self._run.left) != 0:
             rows = self._rows if left is None else min(self._rows, left)
             block = self._run.take(rows, self._threads, None)
             if block.rows > 0:

@@ -13,7 +13,7 @@ from ._results import Result, tell
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class SpectrumCurve:
+class SpectrumCurve(_arrays.Vectors):
     """Density of one channel, 100 bands per decade: vectors of equal length."""
 
     name: str
@@ -133,7 +133,7 @@ def spectrum(data: Data, rate: float | str | None = None, *, method: str = "welc
     confidence  of the two-sided intervals, 0 … 1
     gaps        rows that are missing: 'refuse', 'bridge' or 'longest'
     threads     0: one per processor
-    progress    called with (stage, unit, done, total); False ends the work
+    progress    called with (stage, unit, done, total); a false value but None ends the work
     log         options for reading a log: see read_log()
 
     Raises imukit.Error: the record is too short or constant, samples are missing, the resolution

@@ -16,7 +16,7 @@ _ANSWERS = ("data_sheet", "data_sheet_x10", "fit", "safe", "fit_scale_factors",
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class FilterAnswer:
+class FilterAnswer(_arrays.Vectors):
     """Numbers of a filter, two-sided densities, and how consistent it is over the time between its
     updates. Triples are of the axes x, y, z."""
 
@@ -124,7 +124,7 @@ def tune(model: ModelLike, motions: Any, *, rate: float | str | None = None,
     runs         also simulate so many runs, 3 or more, and compare their NEES
     seed         of the runs and of random vibration
     threads      0: one per processor; the results do not depend on it
-    progress     called with (stage, unit, done, total); False ends the work
+    progress     called with (stage, unit, done, total); a false value but None ends the work
 
     Raises imukit.Error: a model without gyros or accelerometers, a motion that is too short, errors
     without noise. Source: include/imukit/tune_model.h, filter_tuning.h; the fields of the result:

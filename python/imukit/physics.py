@@ -387,7 +387,7 @@ class Instrument:
                           same instrument
         signals           also take the internal signals
         signal_rate       rows of signals per second [Hz]; None: output_rate
-        progress          called with (stage, unit, done, total); False ends the work
+        progress          called with (stage, unit, done, total); a false value but None ends the work
 
         Raises imukit.Error: an input out of range, a run with too many internal steps.
 
@@ -463,7 +463,7 @@ class Instrument:
         step, seed, run  as in run()
         single_axis  make a model of one instrument along x, not of three
         threads      0: one per processor; the result does not depend on it
-        progress     called with (stage, unit, done, total); False ends the work
+        progress     called with (stage, unit, done, total); a false value but None ends the work
         """
         settings = {"duration": duration, "temperature": temperature, "output_rate": output_rate,
                     "level": level, "quick": level is None, "step": step, "seed": seed}

@@ -86,14 +86,66 @@ class Buffers(unittest.TestCase):
         two = imukit.allan(numpy.asfortranarray(numpy.c_[x, x]), 1).curves
         self.assertEqual([list(c.deviation) for c in two], [due, due])
         for name, form in {"complex": x + 0j, "text": x.astype(str), "object": x.astype(object),
-                           "half": x.astype("f2"), "date": x.astype("datetime64[s]"),
+                           "date": x.astype("datetime64[s]"),
                            "records": numpy.zeros(300, [("a", "f8"), ("b", "f8")])}.items():
             with self.subTest(name), self.assertRaises((TypeError, ValueError)):
                 oadev(form)
         with self.assertRaises(ValueError):
             oadev(x.reshape(3, 10, 10))
-        with self.assertRaises(ValueError):
+        with self.assertRaises((TypeError, ValueError)):
             oadev(numpy.float64(3).reshape(()))
+
+
+    @unittest.skipIf(numpy is None, "needs NumPy")
+    def test_masked_is_nan(self):
+        x = numpy.array(noise(300))
+        holes = x.copy()
+        holes[50:60] = numpy.nan
+        masked = numpy.ma.masked_invalid(holes)
+        masked.data[50:60] = 1e6
+        with self.assertWarns(imukit.DataWarning):
+            due = oadev(holes)
+        for form in masked, {"x": masked}, [masked]:
+            with self.assertWarns(imukit.DataWarning):
+                self.assertEqual(oadev(form), due)
+        with self.assertRaises(imukit.Error):
+            imukit.allantools.oadev(masked)
+
+    @unittest.skipIf(numpy is None, "needs NumPy")
+    def test_types_of_numpy(self):
+        x = numpy.array(noise(300)).astype("f2")
+        self.assertEqual(oadev(x), oadev(x.astype(float)))
+        for kind in ("datetime64[s]", "longdouble", "O", "U8", "complex"):
+            with self.subTest(kind), self.assertRaisesRegex(TypeError, "column 'wx'"):
+                oadev({"wx": x.astype(kind)})
+
+    def test_no_vector(self):
+        for bad in (None, 5, 1.5, True, b"/x.csv", bytearray(b"x"), object()):
+            with self.subTest(bad), self.assertRaisesRegex(TypeError, "data: expected"):
+                oadev(bad)
+        with self.assertRaisesRegex(TypeError, "column 'wx'"):
+            oadev({"wx": ["a", "b", "c"]})
+        with self.assertRaisesRegex(TypeError, "item 1 is NoneType"):
+            oadev([1.0, None, 2.0])
+
+    def test_times(self):
+        x = noise(300)
+        self.assertEqual(oadev(x, tau=2.0), oadev(x, tau=[2.0]))
+        for bad in ([2, 1], [1, 1], [float("nan"), 2]):
+            with self.subTest(bad), self.assertRaisesRegex(ValueError, "tau: the times must asc"):
+                oadev(x, tau=bad)
+
+    def test_false_of_any_kind_stops(self):
+        for said in (False, 0, "") + (() if numpy is None else (numpy.False_,)):
+            with self.subTest(said), self.assertRaises(imukit.Error):
+                oadev(noise(300), progress=lambda *stage: said)
+        self.assertTrue(oadev(noise(300), progress=lambda *stage: None))
+
+    def test_flags(self):
+        with self.assertRaisesRegex(TypeError, "earth='no': expected True or False"):
+            imukit.simulate("tactical", 100, 1, earth="no")
+        with self.assertRaisesRegex(TypeError, "rate=True: expected a number"):
+            imukit.allan(noise(300), rate=True)
 
 
 class Threads(unittest.TestCase):
