@@ -38,7 +38,8 @@ def of_numeric(values: Any, name: str) -> Any:
         raise TypeError(f"{name}: items of the type {made.dtype} are no numbers that imukit reads: "
                         "convert them to float64")
     if isinstance(made, found.ma.MaskedArray):
-        return found.ma.filled(made.astype(float), math.nan)
+        masked: Any = made.astype(float)
+        return masked.filled(math.nan)
     return made.astype(float) if made.dtype == found.float16 else found.asarray(made)
 
 

@@ -6,6 +6,7 @@ import copy
 import dataclasses
 import json
 import os
+import re
 from collections.abc import Iterator, Mapping, MutableMapping, Sequence
 from typing import Any
 
@@ -60,7 +61,7 @@ class Model(MutableMapping[str, Any]):
         elif source is None or isinstance(source, Mapping):
             self._take(_core.parse_model('{"imukit": 1, "gyro": {}, "accel": {}}'))
             if source is not None:
-                self._assign({"imukit": 1, **encode("", source)})
+                self._assign({"imukit": 1, **encode("", _nested(source))})
         else:
             self._take(_core.open_model(source))
         if name is not None:
@@ -135,6 +136,10 @@ class Model(MutableMapping[str, Any]):
             return False
         return True
 
+    def clear(self) -> None:
+        """Refused: a model has at least one sensor."""
+        raise TypeError("a model cannot be empty; Model() is one without errors")
+
     def update(self, values: Any = (), /, **more: Any) -> None:
         """Set several values at once, such as those that need each other: all of them, or, if the
         library refuses one, none."""
@@ -184,7 +189,7 @@ class Model(MutableMapping[str, Any]):
 
     # ---- its terms ----
 
-    def only(self, *terms: str) -> Model:
+    def only(self, *terms: str | Sequence[str]) -> Model:
         """A copy with only these terms: keys, groups, or either of one sensor ("gyro.noise"). What
         every sensor has is then stated to be 0.
 
@@ -195,13 +200,14 @@ class Model(MutableMapping[str, Any]):
         """
         return self._select(True, terms)
 
-    def without(self, *terms: str) -> Model:
+    def without(self, *terms: str | Sequence[str]) -> Model:
         """A copy without these terms."""
         return self._select(False, terms)
 
-    def _select(self, keep: bool, terms: tuple[str, ...]) -> Model:
+    def _select(self, keep: bool, terms: tuple[str | Sequence[str], ...]) -> Model:
+        names = [name for term in terms for name in ([term] if isinstance(term, str) else term)]
         made = self.copy()
-        made._core.select(keep, terms)
+        made._core.select(keep, tuple(names))
         return made
 
     def assume_class(self, name: str = "own") -> list[str]:
@@ -350,6 +356,20 @@ class Model(MutableMapping[str, Any]):
         return Model.parse, (self.yaml(),)
 
 
+def _nested(source: Mapping[str, Any]) -> dict[str, Any]:
+    """A tree in which keys may be paths, as a model lists them."""
+    tree: dict[str, Any] = {}
+    paths: dict[str, Any] = {}
+    for key, value in source.items():
+        (paths if isinstance(key, str) and re.search(r"[.\[]", key) else tree)[key] = value
+    if not paths:
+        return tree
+    tree = encode("", tree)
+    for path, value in paths.items():
+        insert(tree, split(path), encode(path, value), path)
+    return tree
+
+
 class Group:
     """A part of a model: model.gyro, model.gyro.noise, an element of a list."""
 
@@ -359,11 +379,17 @@ class Group:
         object.__setattr__(self, "_model", model)
         object.__setattr__(self, "_path", path)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Group, (self._model, self._path)
+
+    def __copy__(self) -> Group:
+        return self
+
     def _at(self, key: str | int) -> str:
         return f"{self._path}[{key}]" if isinstance(key, int) else f"{self._path}.{key}"
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):
+        if name.startswith("_"):
             raise AttributeError(name)
         return self._model._member(self._at(name))
 
@@ -448,6 +474,9 @@ def devices(name: str = "") -> tuple[Device, ...]:
 
 def as_model(model: Model | str | os.PathLike[str] | Mapping[str, Any]) -> Model:
     """A model of what a function accepts in its place: a path, a name of the catalogue, a tree."""
+    if not isinstance(model, (Model, str, os.PathLike, Mapping)):
+        raise TypeError("expected a model: a Model, a path, a name of the catalogue, or a tree, "
+                        f"not {type(model).__name__}")
     return model if isinstance(model, Model) else Model(model)
 
 

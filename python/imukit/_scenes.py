@@ -25,8 +25,6 @@ def named_models(models: ModelLike | Sequence[ModelLike]) -> tuple[tuple[str, An
 
 def named_model(model: ModelLike) -> tuple[str, Any]:
     """A model and its name: that of its file or of the catalogue, or the one that it states."""
-    if model is None:
-        raise TypeError("expected a model, and there is None")
     made = as_model(model)
     if is_path(model):
         return os.fspath(model), made._core  # type: ignore[arg-type]

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from . import _arrays, _core
-from ._model import Model
-from ._units import si
+from ._model import Model, as_model
+from ._units import si, whole
 
 
 class Sensor:
@@ -35,11 +35,12 @@ class Sensor:
     [0.0, 0.0, 0.1, 0.0, 0.0, -9.81]
     """
 
-    def __init__(self, model: Model | str | os.PathLike[str], rate: float | str, *, seed: int = 0,
+    def __init__(self, model: Model | str | os.PathLike[str], rate: float | str, *, seed: int = 1,
                  run: int = 0, count: int = 1, temperature: bool = False) -> None:
-        self.model = model if isinstance(model, Model) else Model(model)
+        self.model = as_model(model)
         self.rate = si("rate", rate, "Hz")
-        self.count = count
+        self.count = count = whole("count", count, 0, 2 ** 32)
+        run, seed = whole("run", run, 0, 2 ** 32 - 1), whole("seed", seed, 0, 2 ** 64 - 1)
         self._core = _core.sensor(self.model._core, run, {
             "rate": rate, "seed": seed, "count": count, "temperature": temperature})
         self.channels = self._names()
@@ -70,6 +71,15 @@ class Sensor:
         readings that depend on it NaN in this step, and leaves nothing behind.
         Raises ValueError: another shape, or a temperature that is missing or one too many.
         """
+        for name, given in (("angular_rate", angular_rate), ("specific_force", specific_force)):
+            if given is None:
+                raise TypeError(f"{name}: expected three numbers, and there is None")
+        if temperature_rate is not None and temperature is None:
+            raise ValueError("temperature_rate: there is no temperature")
+        shape = (len(self.channels), self.count) if self.count > 1 else (len(self.channels),)
+        if out is not None and memoryview(out).shape != shape:
+            raise ValueError(f"out: expected an array of the shape {shape}, not "
+                             f"{memoryview(out).shape}")
         if out is None:
             out = _arrays.empty(len(self.channels) * self.count)
             if self.count > 1:
@@ -81,6 +91,9 @@ class Sensor:
         """Is the reading of step `row`, from 0, lost (timing.drops)? number: of the sensor."""
         return self._core.dropped(number, row)
 
+    def __reduce__(self) -> Any:
+        raise TypeError("the state of a Sensor cannot be copied; make another of the same seed")
+
     def __repr__(self) -> str:
         several = f", count={self.count}" if self.count > 1 else ""
-        return f"Sensor({self.model.name!r}, rate={self.rate:g}{several})"
+        return f"Sensor({self.model.get('name', 'the model')!r}, rate={self.rate:g}{several})"

@@ -14,7 +14,7 @@ from ._log import Log, made_log
 from ._model import Model, as_model, select_terms
 from ._motion import Motion, temperature_of
 from ._results import DataWarning
-from ._units import si
+from ._units import si, whole
 
 _Progress = Callable[[str, str, int, int], object] | None
 _Model = Model | str | os.PathLike[str] | Mapping[str, Any]
@@ -28,8 +28,10 @@ class _Run:
                  options: dict[str, Any], level: int) -> None:
         unit = select_terms(as_model(model), options.pop("only"), options.pop("without"))
         run, field = options.pop("run"), options.pop("field")
-        if not 0 <= run < 2 ** 32:
-            raise ValueError(f"run={run}: expected 0 to 4294967295")
+        run = whole("run", run, 0, 2 ** 32 - 1)
+        options["seed"] = whole("seed", options["seed"], 0, 2 ** 64 - 1)
+        if options["substeps"] is not None:
+            options["substeps"] = whole("substeps", options["substeps"], 1, 2 ** 63 - 1)
         if motion is not None:
             motion = _motion(motion, rate, options)
             options.update(motion._rest)
@@ -39,6 +41,8 @@ class _Run:
             raise TypeError("rate is missing, such as rate=100 or rate='200 Hz'")
         if field is not None:
             options.update(zip(("field_north", "field_east", "field_down"), _vector(field)))
+            if "mag" not in unit:
+                raise ValueError("field: the model has no magnetometer")
         length = math.nan if duration is None else si("duration", duration, "s")
         self._core = _core.simulation(unit._core, {"rate": rate, **options}, run, length,
                                       None if motion is None else motion._core,
@@ -88,6 +92,9 @@ def _motion(motion: Any, rate: Any, options: dict[str, Any]) -> Motion:
         if latitude is not None or height is not None:
             raise ValueError("latitude and height are of a unit at rest, and there is a motion")
         return motion
+    if isinstance(motion, str) and "\n" in motion:
+        return Motion.parse(motion, latitude=latitude, height=0.0 if height is None else height,
+                            seed=options["seed"])
     return Motion(motion, rate=rate, latitude=latitude, height=0.0 if height is None else height,
                   seed=options["seed"])
 
@@ -196,6 +203,9 @@ class Blocks(Iterator[Log]):
     def __exit__(self, *raised: object) -> None:
         self.close()
 
+    def __reduce__(self) -> Any:
+        raise TypeError("the state of a simulation cannot be copied; begin another of this seed")
+
     def __next__(self) -> Log:
         while not self._closed and (left := self._run.left) != 0:
             rows = self._rows if left is None else min(self._rows, left)
@@ -232,10 +242,9 @@ def simulate_blocks(model: _Model, rate: float | str | None = None,
     >>> first.rows, float(second["time"][0]), blocks.rows_left
     (1000, 10.0, None)
     """
-    if rows < 1:
-        raise ValueError(f"rows={rows}: expected at least 1")
     given = locals()
     del given["rows"]
+    rows = whole("rows", rows, 1, 2 ** 63 - 1)
     return Blocks(_begin({**given, "progress": None}), rows, threads)
 
 
@@ -256,8 +265,8 @@ def simulate_runs(model: _Model, runs: int, rate: float | str | None = None,
     >>> len({float(log["gyro_x"][0]) for log in logs})
     3
     """
-    if runs < 1 or not 0 <= threads <= 65536:
-        raise ValueError(f"runs={runs}, threads={threads}: expected at least 1, and 0 to 65536")
+    runs, threads = whole("runs", runs, 1, 2 ** 32), whole("threads", threads, 0, 65536)
+    run = whole("run", run, 0, 2 ** 32 - 1)
     unit = as_model(model)
     with concurrent.futures.ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
         waiting = [pool.submit(simulate, unit, rate, duration, run=run + k, threads=1, **options)

@@ -271,5 +271,22 @@ class Refused(unittest.TestCase):
             imukit.Model("tactical").assume_class("best")
 
 
+class Copied(unittest.TestCase):
+    def test_groups(self):
+        group = imukit.Model("AHRS").gyro
+        for made in (copy.copy(group), copy.deepcopy(group), pickle.loads(pickle.dumps(group))):
+            self.assertEqual(made.to_dict(), group.to_dict())
+
+    def test_paths_as_keys(self):
+        model = imukit.Model("AHRS")
+        self.assertEqual(imukit.Model(dict(model)).gyro.to_dict().keys(),
+                         model.gyro.to_dict().keys())
+        made = imukit.Model({"gyro.bias.fixed": [1.0, 2.0, 3.0]})
+        self.assertEqual(made["gyro.bias.fixed"], (1.0, 2.0, 3.0))
+        with self.assertRaisesRegex(TypeError, "cannot be empty"):
+            model.clear()
+        self.assertEqual(model.only(["gyro.noise"]), model.only("gyro.noise"))
+
+
 if __name__ == "__main__":
     unittest.main()

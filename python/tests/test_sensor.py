@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sensors that are stepped."""
 import array
+import copy
 import math
 import unittest
 
@@ -90,6 +91,31 @@ class Refused(unittest.TestCase):
                 sensor.step([0, 0, 0], GRAVITY, out=out)
         with self.assertRaises(IndexError):
             sensor.dropped(3, 1)
+
+
+class Stated(unittest.TestCase):
+    def test_what_is_no_argument(self):
+        for make in (lambda: imukit.Sensor(None, 100), lambda: imukit.Sensor("AHRS", 100, seed=None),
+                     lambda: imukit.Sensor("AHRS", 100).step(None, GRAVITY),
+                     lambda: imukit.Sensor("AHRS", 100).step([0, 0, 0], None),
+                     lambda: copy.copy(imukit.Sensor("AHRS", 100)),
+                     lambda: copy.deepcopy(imukit.Sensor("AHRS", 100))):
+            with self.assertRaises(TypeError):
+                make()
+        for named in ({"seed": -1}, {"run": -1}, {"count": -1}):
+            with self.assertRaisesRegex(ValueError, f"{[*named][0]}=-1"):
+                imukit.Sensor("AHRS", 100, **named)
+        self.assertIn("the model", repr(imukit.Sensor(imukit.Model(), 100)))
+
+    def test_shape_of_out(self):
+        flat = array.array("d", bytes(8 * 24))
+        several = imukit.Sensor("AHRS", 100, count=4)
+        for out in (flat, memoryview(flat).cast("B").cast("d", (4, 6))):
+            with self.assertRaisesRegex(ValueError, r"\(6, 4\)"):
+                several.step([0, 0, 0], GRAVITY, out=out)
+        several.step([0, 0, 0], GRAVITY, out=memoryview(flat).cast("B").cast("d", (6, 4)))
+        with self.assertRaisesRegex(ValueError, "temperature_rate"):
+            several.step([0, 0, 0], GRAVITY, temperature_rate=1.0)
 
 
 if __name__ == "__main__":

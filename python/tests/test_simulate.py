@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulations: the numbers of the command, blocks, runs, motions, and what is refused."""
 import array
+import copy
 import gc
 import math
 import os
@@ -238,7 +239,7 @@ class Refused(unittest.TestCase):
                                                         "motion": motion}),
                 (ValueError, "run=", {"rate": 10, "duration": 1, "run": -1}),
                 (ValueError, "run=", {"rate": 10, "duration": 1, "run": 2 ** 32}),
-                (OverflowError, "", {"rate": 10, "duration": 1, "seed": -1}),
+                (ValueError, "", {"rate": 10, "duration": 1, "seed": -1}),
                 (TypeError, "", {"rate": 10, "duration": 1, "seed": "x"}),
                 (TypeError, "", {"rate": [10], "duration": 1}),
                 (imukit.Error, "latitude", {"rate": 10, "duration": 1, "latitude": 5.0}),
@@ -292,6 +293,25 @@ class Refused(unittest.TestCase):
             imukit.Motion.parse(CAR).truth(10, 1, 5)
         with self.assertRaises(TypeError):
             imukit.Motion.at_rest().truth(10)
+
+
+class Stated(unittest.TestCase):
+    def test_what_is_no_argument(self):
+        for kind, named in ((TypeError, {"seed": None}), (ValueError, {"seed": -1}),
+                            (ValueError, {"run": -1}), (ValueError, {"substeps": 0}),
+                            (ValueError, {"field": [1e-5, 0, 4e-5]})):
+            with self.subTest(named=named), self.assertRaisesRegex(kind, [*named][0]):
+                imukit.simulate("AHRS", 100, 1, **named)
+        with self.assertRaisesRegex(TypeError, "expected a model"):
+            imukit.simulate(None, 100, 1)
+        with self.assertRaisesRegex(TypeError, "cannot be copied"):
+            copy.copy(imukit.simulate_blocks("AHRS", 100, 1))
+
+    def test_text_of_a_script(self):
+        text = "imukit_motion: 1\nsteps: [hold 1 s, rotate z 90 deg at 90 deg/s]"
+        log = imukit.simulate("AHRS", 100, motion=text)
+        due = imukit.simulate("AHRS", 100, motion=imukit.Motion.parse(text))
+        self.assertEqual(list(log["gyro_z"]), list(due["gyro_z"]))
 
 
 if __name__ == "__main__":

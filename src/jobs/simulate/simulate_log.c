@@ -184,12 +184,12 @@ imk_status imk_simulated_rows_next(imk_simulated_rows *r, size_t most, double *c
     while (most > 0 && status == IMK_OK) {
         const uint64_t left = imk_simulated_rows_left(r);
         size_t count = most < step ? most : step;
-        double *at[COLUMNS_MAX] = {NULL};
+        double *at[COLUMNS_MAX] = {columns[0] + *made}; /* the time is always there */
         if (left < count)
             count = (size_t)left;
         if (count == 0)
             break;
-        for (size_t c = 0; c < r->layout.count; c++)
+        for (size_t c = 1; c < r->layout.count; c++)
             at[c] = columns[c] + *made;
         *made += make_rows(r, count, at, job->executor);
         most -= count;
