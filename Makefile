@@ -4,7 +4,7 @@
 #   make demo    a first result: simulate a sensor, identify it, see the report
 #   make test    build and run every test
 #   make check   format, static analysis, sanitizers, portability, byte identity
-#   make tidy-deep  what `make check` reads with clang's analyzer, with 22 times its patience
+#   make tidy-deep  what `make check` reads with clang's analyzer, with 75 times its patience
 #   make sanitize-all  every test with the sanitizers, of which `make check` runs a part
 #   make bench   speed against yardsticks: build/bench.csv
 #   make experiments  build the long statistical experiments: build/experiments/*

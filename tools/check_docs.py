@@ -356,9 +356,7 @@ def make_package():
 
 
 def main(arguments):
-    subprocess.run(["cmake", "-S", ROOT, "-B", BUILD], stdout=subprocess.DEVNULL, check=True)
-    subprocess.run(["cmake", "--build", BUILD, "-j", str(os.cpu_count()), "--target",
-                    "imukit-command"], stdout=subprocess.DEVNULL, check=True)
+    subprocess.run([ROOT / "tools/release_build.sh", "imukit-command"], check=True)
     make_package()
     check_the_check()
     wanted = tuple(name for name in arguments if name != "--update") or ("",)

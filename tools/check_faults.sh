@@ -4,6 +4,5 @@
 set -eu
 cd "$(dirname "$0")/.."
 export BUILD=${BUILD:-build}
-cmake -S . -B "$BUILD" >/dev/null
-cmake --build "$BUILD" -j "$(nproc)" --target imukit-command >/dev/null
+tools/release_build.sh imukit-command
 tools/run_faults --quick

@@ -10,9 +10,7 @@ out=build-check/firmware
 build=${BUILD:-build}
 rm -rf "$out"
 mkdir -p "$out"
-cmake -S . -B "$build" >/dev/null
-cmake --build "$build" -j "$(nproc)" --target imukit-command >"$out/build.log" 2>&1 ||
-    { cat "$out/build.log"; exit 1; }
+tools/release_build.sh imukit-command
 
 warnings="-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion -Werror"
 m4="-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard"

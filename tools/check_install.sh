@@ -7,8 +7,7 @@ cd "$(dirname "$0")/.."
 build=${BUILD:-build}
 out=build-check/install
 prefix=$PWD/$out/prefix
-cmake -S . -B "$build" >/dev/null
-cmake --build "$build" -j "$(nproc)" --target product >/dev/null
+tools/release_build.sh product
 rm -rf "$out"
 mkdir -p "$out"
 cmake --install "$build" --prefix "$prefix" >/dev/null

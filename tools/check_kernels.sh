@@ -5,8 +5,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 build=${BUILD:-build}
-cmake -S . -B "$build" -DIMUKIT_TESTS=ON >/dev/null
-cmake --build "$build" -j "$(nproc)" >/dev/null
+tools/release_build.sh all
 # For these the linker takes a kernel.
 names=
 for test in $(find tests/{base,model,noise,motion,simulate,compensate,navigate} -name 'test_*.c'); do

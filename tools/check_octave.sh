@@ -9,10 +9,7 @@ build=$(realpath "${BUILD:-build}")
 out=build-check/octave
 rm -rf "$out"
 mkdir -p "$out/build"
-cmake -S . -B "$build" >/dev/null
-cmake --build "$build" -j "$(nproc)" --target octave imukit-command >"$out/build.log" 2>&1 ||
-    { cat "$out/build.log"; exit 1; }
-! grep -n warning: "$out/build.log"
+tools/release_build.sh octave imukit-command
 
 octave="timeout 300 octave-cli --no-gui --quiet --no-init-file --no-history"
 run() { # FILE ARGUMENT...

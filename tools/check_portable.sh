@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # libimukit and libimukit-physics compile unchanged, without a warning, for a Cortex-M4F and for
 # WebAssembly. On the Cortex their objects hold no writable data, and link with newlib and libm alone.
-# So do the jobs and the renderers of results for WebAssembly.
+# So do the jobs and the renderers of results for WebAssembly. What no program here needs is only read
+# by its compiler.
 # WebAssembly is run by Node: the examples that need nothing else, and the two programs that hash
 # what must be the same bits everywhere, say there what they say here. The stack is what wasm-ld makes
 # it, 64 KiB; it stands below the data, so that to overflow it is to stop.
@@ -13,10 +14,6 @@ out=build-check/portable
 mkdir -p "$out"
 
 tools/compile_cortex.sh
-# Both clang and gcc see each file, so what only one of them warns about is found.
-tools/compile_core.sh "$out/wasm32" "$(tools/core_files.sh; find src/jobs src/report -name '*.c')" \
-    clang --target=wasm32-wasi -O2
-
 if tools/writable_data.sh arm-none-eabi-objdump build-check/cortex-m4/*.o; then
     echo "writable data (above): make it const, or give it to the caller"
     exit 1
@@ -27,15 +24,25 @@ arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -st
     examples/identify_record.c build-check/cortex-m4/*.o -lm -o "$out/identify_record.elf" \
     2>"$out/link.log" || { grep -v 'is not implemented' "$out/link.log"; exit 1; }
 
-{ cmake -S . -B "$build" && cmake --build "$build" -j "$(nproc)" --target imukit-physics imukit-io; } \
-    >"$out/build.log" 2>&1 || { cat "$out/build.log"; exit 1; }
+tools/release_build.sh imukit-physics imukit-io
 # What includes a header of imukit-io needs more.
 io='campaign|design_file|figure_file|firmware_file|io|log|model_file|motion_file|output_file|parameter_file'
 programs=$(grep -LE "\"imukit/($io|thread_pool)\.h\"" examples/*.c)
+programs="$programs tests/identity/simulate_hash.c tests/identity/physics_hash.c"
+for source in $programs; do
+    gcc -std=c17 -O2 -Iinclude -ffp-contract=off -c "$source" -o "$out/$(basename "$source" .c).o"
+done
+# Both clang and gcc see each file, so what only one of them warns about is found.
+files=$(tools/core_files.sh; find src/jobs src/report -name '*.c')
+needed="/($(tools/needed_files.sh "$out"/*.o | paste -sd'|'))$"
+clang="clang --target=wasm32-wasi"
+tools/compile_core.sh "$out/wasm32" "$(grep -E "$needed" <<<"$files")" $clang -O2
+tools/compile_core.sh "$out/wasm32-read" "$(grep -vE "$needed" <<<"$files")" $clang -fsyntax-only
+
 run=0
-for source in $programs tests/identity/simulate_hash.c tests/identity/physics_hash.c; do
+for source in $programs; do
     name=$(basename "$source" .c)
-    gcc -std=c17 -O2 -Iinclude -ffp-contract=off "$source" \
+    gcc "$out/$name.o" \
         -Wl,--start-group "$build"/libimukit{,-physics,-io}.a -Wl,--end-group -lm -o "$out/$name"
     clang --target=wasm32-wasi -std=c17 -O2 -Iinclude -ffp-contract=off -Wl,--stack-first \
         "$source" "$out"/wasm32/*.o -lm -o "$out/$name.wasm"

@@ -6,8 +6,7 @@
 set -u
 cd "$(dirname "$0")/.."
 build=${BUILD:-build}
-cmake -S . -B "$build" >/dev/null &&
-    cmake --build "$build" -j "$(nproc)" --target imukit-physics imukit-io-shared >/dev/null || exit 1
+tools/release_build.sh imukit-physics imukit-io-shared || exit 1
 status=0
 complain() { echo "$*"; status=1; }
 

@@ -7,8 +7,7 @@ cd "$(dirname "$0")/.."
 build=${BUILD:-build}
 tests=$(grep -rlE --include='test_*.c' imk_thread_pool_create tests)
 names="($(basename -s .c $tests | paste -sd'|'))"
-cmake -S . -B "$build" -DIMUKIT_TESTS=ON >/dev/null
-cmake --build "$build" -j "$(nproc)" --target imukit-tests >/dev/null
+tools/release_build.sh imukit-tests
 files=$(tools/needed_files.sh $(printf "$build/CMakeFiles/imukit-tests.dir/%s.o " $tests) | paste -sd'|')
 cmake --preset threads -DIMUKIT_COMMAND=OFF -DIMUKIT_TEST_FILTER="$names\\." \
     -DIMUKIT_FILE_FILTER="($files)" >/dev/null

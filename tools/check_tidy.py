@@ -3,7 +3,7 @@
 """clang-tidy (.clang-tidy) on the libraries, the command, the examples and the fuzz entry points, with
 clang's own warnings.
 
-    tools/check_tidy.py          the analyzer gives up on a function after 10,000 steps
+    tools/check_tidy.py          the analyzer gives up on a function after 3,000 steps
     tools/check_tidy.py --deep   after 225,000, its own limit: five minutes (make tidy-deep)
 
 Nearly all the time is the analyzer's. It follows calls within a file either way: a fault that takes
@@ -95,7 +95,7 @@ def stale(files, deep):
         flags = own_flags(file.name, text)
         if flags is None:
             continue
-        analyzer = f"max-nodes={225000 if deep else 10000}"
+        analyzer = f"max-nodes={225000 if deep else 3000}"
         if not defines.search(texts.read(file)): # a function has one body
             analyzer += f",model-path={MODELS}"
         flags = ["-std=c17", "-Iinclude", "-Isrc", "-Icli", *WARNINGS, *flags,

@@ -6,6 +6,9 @@ set -eu
 cd "$(dirname "$0")/.."
 files=$(tools/core_files.sh)
 out=build-check/cortex-m4
+mkdir -p "$out"
+exec 9>"$out.lock" # two checks use them
+flock 9
 made_of=(include tools/compile_core.sh tools/compile_cortex.sh src)
 [ -e "$out/made" ] && [ -z "$(find "${made_of[@]}" -newer "$out/made" -print -quit)" ] && exit
 touch build-check/cortex-m4.begun
