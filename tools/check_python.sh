@@ -10,7 +10,7 @@ BUILD=$build tools/build_wheel.sh >/dev/null
 BUILD=$build tools/test_wheel.sh
 
 BUILD=$build tools/build_package.sh "$build/python-debug" /usr/bin/python3-dbg
-(cd python/tests && PYTHONPATH=$build/python-debug /usr/bin/python3-dbg count_references.py 12)
+(cd python/tests && PYTHONPATH=$build/python-debug /usr/bin/python3-dbg count_references.py 4)
 
 IMUKIT_SANITIZE=1 BUILD=$build tools/build_package.sh "$build/python-sanitized" /usr/bin/python3
 # Leaks of the interpreter itself are not ours; the debug interpreter counts.
