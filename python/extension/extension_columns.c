@@ -187,8 +187,10 @@ static bool take_vector(columns *c, PyObject *object)
         return false;
     c->views++;
     if (view->ndim != 1 || view->suboffsets) {
-        PyErr_Format(PyExc_ValueError, "column %zu has %d dimensions: expected one", c->count,
-                     view->ndim);
+        PyErr_Format(PyExc_ValueError,
+                     "column %zu has %d dimensions: expected one; axes in a matrix stand in a "
+                     "dictionary: {\"gyro [rad/s]\": w, \"accel [m/s^2]\": f}",
+                     c->count, view->ndim);
         return false;
     }
     return check_rows(c, view->shape[0]) &&

@@ -5,7 +5,8 @@ from __future__ import annotations
 import array
 import dataclasses
 import math
-from typing import Any, Iterable, NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
 
 try:
     import numpy
@@ -59,6 +60,29 @@ def of_matrix(numbers: bytes, columns: int, which: range, shape: tuple[int, ...]
     for row in range(rows):
         made.extend(view[row * columns + which.start:row * columns + which.stop:which.step])
     return memoryview(made).cast("B").cast("d", (rows, *shape))
+
+
+def columns_of(matrix: Any) -> list[Any]:
+    """The columns of a matrix, not copied where NumPy made it or its rows follow each other."""
+    if hasattr(matrix, "T"):
+        return list(matrix.T)
+    view: Any = memoryview(matrix)
+    rows, columns = view.shape or (0, 0)
+    if not view.c_contiguous:
+        copied = array.array(view.format, (view[i, j] for i in range(rows) for j in range(columns)))
+        view = memoryview(copied)
+    flat = view.cast("B")
+    return [flat.cast(view.format)[column::columns] for column in range(columns)]
+
+
+def matrix_of(columns: Sequence[Any]) -> Array:
+    """A matrix of vectors of float64 of one length: its columns."""
+    if numpy is not None:
+        return numpy.stack(columns, axis=1)
+    made = array.array("d", bytes(8 * len(columns) * len(columns[0])))
+    for place, column in enumerate(columns):
+        memoryview(made)[place::len(columns)] = column
+    return memoryview(made).cast("B").cast("d", (len(columns[0]), len(columns)))
 
 
 class Vectors:

@@ -11,7 +11,8 @@ from ._units import si
 
 Data = Any
 """A path of a log, a Log, a vector, a matrix whose rows are samples, a dictionary of columns, a list
-of columns, or a table with columns such as pandas.DataFrame."""
+of columns, or a table with columns such as pandas.DataFrame. In a dictionary a matrix of three columns
+stands for the axes: {"gyro [deg/s]": w} for "gyro_x [deg/s]" and so on."""
 
 
 def is_path(data: Data) -> bool:
@@ -42,9 +43,11 @@ def open_record(data: Data, rate: float | str | None, columns: str | Sequence[st
     if hasattr(data, "_imukit_columns"):
         names, arrays = data._imukit_columns()
     elif isinstance(data, Mapping) or hasattr(data, "to_numpy") and hasattr(data, "columns"):
-        names = [str(name) for name in data] if isinstance(data, Mapping) else \
-            [str(name) for name in data.columns]
-        arrays = [_column(data[name], f"column {name!r}") for name in data]
+        names, arrays = [], []
+        for name in data if isinstance(data, Mapping) else data.columns:
+            for title, column in _axes(str(name), _column(data[name], f"column {name!r}")):
+                names.append(title)
+                arrays.append(column)
     else:
         names, arrays = None, _columns(data)
     if columns is not None:
@@ -53,6 +56,25 @@ def open_record(data: Data, rate: float | str | None, columns: str | Sequence[st
         names = _names(_count(arrays))
     seconds = 0.0 if rate is None else si("rate", rate, "Hz")
     return _core.arrays(name, tuple(names), arrays, seconds)
+
+
+def _axes(name: str, values: Any) -> list[tuple[str, Any]]:
+    """A vector with its name, or the three columns of a matrix with theirs."""
+    try:
+        view = memoryview(values)
+    except TypeError:
+        return [(name, values)]
+    if view.ndim == 1 or view.shape is None:
+        return [(name, values)]
+    if view.ndim != 2 or view.shape[1] not in (1, 3):
+        hint = ". Rows are samples: is it to be transposed?" if view.shape[0] == 3 else ""
+        raise ValueError(f"column {name!r} has the shape {view.shape}: expected a vector, or a "
+                         f"column for each axis, x, y and z{hint}")
+    if view.shape[1] == 1:
+        return [(name, _arrays.columns_of(values)[0])]
+    word, bracket, unit = name.partition("[")
+    titles = [f"{word.strip()}_{axis}" + (f" [{unit}" if bracket else "") for axis in "xyz"]
+    return list(zip(titles, _arrays.columns_of(values)))
 
 
 def log_options(rate: Any, columns: Any, log: Mapping[str, Any] | None) -> dict[str, Any]:

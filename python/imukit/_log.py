@@ -14,7 +14,8 @@ from . import _arrays, _core
 class Log(Mapping[str, Any]):
     """A log in memory: its columns by their names, in SI units. See read_log().
 
-    log["gyro_x"] is a vector (numpy.ndarray, or memoryview without NumPy) of the log's own memory.
+    log["gyro_x"] is a vector (numpy.ndarray, or memoryview without NumPy) of the log's own memory,
+    log["gyro"] a matrix of the columns gyro_x, gyro_y and gyro_z, made from them.
     Every function of imukit takes a Log where it takes data.
     """
 
@@ -38,6 +39,9 @@ class Log(Mapping[str, Any]):
         return 1.0 / self.interval if self.interval else math.nan
 
     def __getitem__(self, name: str) -> _arrays.Array:
+        axes = [f"{name}_{axis}" for axis in "xyz"]
+        if name not in self._columns and all(axis in self._columns for axis in axes):
+            return _arrays.matrix_of([_arrays.of_buffer(self._columns[axis]) for axis in axes])
         if name not in self._columns:
             raise KeyError(f"{name!r}; there are: {', '.join(self._columns)}")
         return _arrays.of_buffer(self._columns[name])

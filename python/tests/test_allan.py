@@ -38,6 +38,33 @@ class Values(unittest.TestCase):
         both = imukit.allan(matrix, 10, columns=("a", "b"))
         self.assertEqual(list(both.curve("a").deviation), due)
 
+    def test_matrix_of_axes(self):
+        x = noise(900)
+        apart = {f"gyro_{axis} [deg/s]": x[k::3] for k, axis in enumerate("xyz")}
+        due = imukit.allan(apart, 10)
+        for code in "df":
+            rows = memoryview(array.array(code, x)).cast("B").cast(code, (300, 3))
+            found = imukit.allan({"gyro [deg/s]": rows}, 10)
+            for axis in apart:
+                name = axis.split()[0]
+                for a, b in zip(found.curve(name).deviation, due.curve(name).deviation):
+                    self.assertAlmostEqual(a / b, 1, 12 if code == "d" else 6)
+        single = memoryview(x).cast("B").cast("d", (900, 1))
+        self.assertEqual(list(imukit.allan({"x": single}, 10).curve().deviation),
+                         list(imukit.allan({"x": x}, 10).curve().deviation))
+        for shape in (450, 2), (3, 300), (100, 3, 3):
+            with self.subTest(shape), self.assertRaisesRegex(ValueError, "shape"):
+                imukit.allan({"gyro": memoryview(x).cast("B").cast("d", shape)}, 10)
+        with self.assertRaisesRegex(ValueError, "dictionary"):
+            imukit.allan([memoryview(x).cast("B").cast("d", (300, 3))] * 2, 10)
+
+    def test_axes_of_a_log(self):
+        log = imukit.simulate("tactical", rate=10, duration=3, seed=1)
+        matrix = log["accel"]
+        self.assertEqual(matrix.shape, (30, 3))
+        self.assertEqual([matrix[k, 2] for k in range(30)], list(log["accel_z"]))
+        self.assertEqual(log["gyro"][0, 1], log["gyro_y"][0])
+
     def test_number_types(self):
         numbers = [k * k % 101 for k in range(400)]
         due = list(imukit.allan([float(k) for k in numbers], 1).curve().deviation)
