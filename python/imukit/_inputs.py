@@ -44,8 +44,8 @@ def open_record(data: Data, rate: float | str | None, columns: str | Sequence[st
         names, arrays = data._imukit_columns()
     elif isinstance(data, Mapping) or hasattr(data, "to_numpy") and hasattr(data, "columns"):
         names, arrays = [], []
-        for name in data if isinstance(data, Mapping) else data.columns:
-            for title, column in _axes(str(name), _column(data[name], f"column {name!r}")):
+        for key in data if isinstance(data, Mapping) else data.columns:
+            for title, column in _axes(str(key), _column(data[key], f"column {key!r}")):
                 names.append(title)
                 arrays.append(column)
     else:
