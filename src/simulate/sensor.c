@@ -100,6 +100,7 @@ static size_t divide(const imk_model *model, const imk_sensor_settings *settings
     imk_sensor made = {.count = count, .places = places, .channels = channels};
     *sensor = imki_take(parts, sizeof made);
     made.channel = imki_take(parts, count * channels * sizeof *made.channel);
+    made.response = imki_take(parts, imki_row_places(count) * sizeof(double));
     made.number = imki_take(parts, IMKI_SENSOR_NUMBERS * channels * places * sizeof(double));
     made.rows = imki_take(parts, IMKI_SENSOR_ROWS * imki_row_places(count) * sizeof(double));
     const size_t zero = parts->used;

@@ -53,7 +53,8 @@ struct imk_sensor {
     double *number;                     /* [imki_sensor_number][channel][place] */
     /* Groups of sensors one after another, each [channel][sample of the block][place]. */
     double *noise;
-    double *block; /* scratch: IMKI_INTERLEAVED blocks */
+    double *block;    /* scratch: IMKI_INTERLEAVED blocks */
+    double *response; /* scratch: of a channel of a group that is not whole */
 };
 
 /* Room in arrays of numbers: a single sensor is a pair of samples. */
@@ -93,20 +94,21 @@ static inline double *imki_sensor_row(const imk_sensor *s, int row)
     return s->rows + (size_t)row * imki_row_places(s->count);
 }
 
-/* The output stage of a channel of some sensors: a response becomes a reading. */
-typedef struct imki_output {
-    const imki_channel *form; /* whose numbers are those of all */
-    imki_quantizer quantizer;
-    bool end;                                                 /* of a segment */
-    double *filter, *filter_speed, *residual, *sum, *counted; /* of each sensor */
-    const double *noise;
-} imki_output;
-
-/* @param count  <= IMKI_GROUP
+/* The output stage of a channel of `count` sensors from `first` on: a response becomes a reading.
+ * The state has all it needs: what is handed over on the stack can be slow, because a processor
+ * takes a load for one of something stored just before when their addresses are equal modulo 4096.
+ * @param noise  of this sample
+ * @param count  <= IMKI_GROUP
  * @return true if all readings are finite */
-bool imki_sensor_output(imk_kernel kernel, const imki_output *output, size_t count, double *y);
-bool imki_sensor_output_portable(const imki_output *output, size_t count, double *y);
-bool imki_sensor_output_avx2(const imki_output *output, size_t count, double *y);
-bool imki_sensor_output_avx512(const imki_output *output, size_t count, double *y);
+bool imki_sensor_output(const imk_sensor *s, size_t channel, size_t first, const double *noise,
+                        size_t count, double *y);
+
+/* The same of one instruction set. */
+#define IMKI_SENSOR_OUTPUT(isa)                                                                    \
+    bool imki_sensor_output_##isa(const imk_sensor *s, size_t channel, size_t first,               \
+                                  const double *noise, size_t count, double *y);
+IMKI_SENSOR_OUTPUT(portable)
+IMKI_SENSOR_OUTPUT(avx2)
+IMKI_SENSOR_OUTPUT(avx512)
 
 #endif

@@ -168,7 +168,6 @@ static void fetch_noise(const imk_sensor *s, size_t first, size_t within)
 
 static bool step_group(imk_sensor *s, size_t first, size_t count, double *readings)
 {
-    IMKI_ALIGNED double part[IMKI_GROUP];
     size_t places;
     const size_t within = (size_t)(s->next % IMK_NOISE_BLOCK);
     const double *noise = imki_group_noise(s, first, &places) + within * places;
@@ -177,28 +176,18 @@ static bool step_group(imk_sensor *s, size_t first, size_t count, double *readin
     for (size_t kind = 0, c = 0; kind < 2; kind++) {
         imki_exposure *exposure = &s->exposure[kind];
         for (const size_t end = c + s->of_kind[kind]; c < end; c++) {
-            double *place = readings + c * s->count + first, *y = count < IMKI_GROUP ? part : place;
-            double *numbers[IMKI_SENSOR_NUMBERS];
-            for (int i = 0; i < IMKI_SENSOR_NUMBERS; i++)
-                numbers[i] = imki_sensor_numbers(s, (imki_sensor_number)i, c) + first;
-            exposure->bias = numbers[IMKI_SENSOR_BIAS];
-            exposure->scale = numbers[IMKI_SENSOR_SCALE];
+            double *place = readings + c * s->count + first;
+            double *y = count < IMKI_GROUP ? s->response : place;
+            exposure->bias = imki_sensor_numbers(s, IMKI_SENSOR_BIAS, c) + first;
+            exposure->scale = imki_sensor_numbers(s, IMKI_SENSOR_SCALE, c) + first;
             if (s->count == 1)
                 imki_distort_pair(&s->axis[c], exposure, y);
             else
                 imki_distort_chunks(s->random.kernel, &s->axis[c], exposure, 1, y);
-            const imki_output output = {&s->channel[c],
-                                        s->quantizer[c],
-                                        (s->next + 1) % IMK_NOISE_STEPS == 0,
-                                        numbers[IMKI_SENSOR_FILTER],
-                                        numbers[IMKI_SENSOR_FILTER_SPEED],
-                                        numbers[IMKI_SENSOR_RESIDUAL],
-                                        numbers[IMKI_SENSOR_SUM],
-                                        numbers[IMKI_SENSOR_COUNTED],
-                                        noise + c * IMK_NOISE_BLOCK * places};
-            finite &= imki_sensor_output(s->random.kernel, &output, count, y);
-            if (y == part)
-                memcpy(place, part, count * sizeof *part);
+            finite &=
+                imki_sensor_output(s, c, first, noise + c * IMK_NOISE_BLOCK * places, count, y);
+            if (y != place)
+                memcpy(place, y, count * sizeof *y);
         }
     }
     return finite;
