@@ -21,7 +21,8 @@ class Sensor:
     temperature  True: each step is given one
 
     The readings are, byte for byte, those of simulate() for this motion as a recorded one. Noise is
-    made 512 samples ahead, so one step in 512 takes longer. One thread at a time may step a sensor.
+    made 512 samples ahead, so one step in 512 takes longer (many sensors take turns). One thread at
+    a time may step a sensor.
 
     Raises imukit.Error: a model that is not valid, or whose timing moves samples (rate_error,
     jitter, skew). Source: include/imukit/sensor.h.
