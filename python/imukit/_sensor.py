@@ -94,11 +94,12 @@ class Sensor:
                                    temperature_rate, out)
         except (BufferError, TypeError, ValueError):
             pass  # what can be converted is, and the rest refused, below
-        return self._core.step(*(
+        rate, force, acceleration, kelvin, slope = (
             None if values is None else _arrays.of_rows(values, name) for name, values in (
                 ("angular_rate", angular_rate), ("specific_force", specific_force),
                 ("angular_acceleration", angular_acceleration), ("temperature", temperature),
-                ("temperature_rate", temperature_rate))), out)
+                ("temperature_rate", temperature_rate)))
+        return self._core.step(rate, force, acceleration, kelvin, slope, out)
 
     @staticmethod
     def _halves(both: Any) -> tuple[Any, Any]:
