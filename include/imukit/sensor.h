@@ -24,7 +24,8 @@
  *  sample adds nothing to the integral that is quantized; hysteresis leaves out the temperature;
  *  noise goes on as always.
  *
- *  Noise is made 512 samples ahead, so one step in 512 takes longer: about 30 us for a sensor.
+ *  Noise is made 512 samples ahead, so one step in 512 takes longer: about 30 us for a sensor. Many
+ *  sensors take turns, 32 at a time; the first samples are made at the start.
  */
 #ifndef IMUKIT_SENSOR_H
 #define IMUKIT_SENSOR_H
@@ -61,8 +62,8 @@ typedef struct imk_sensor_truth {
 typedef struct imk_sensor imk_sensor;
 
 /** Bytes for the sensors of these settings, of a model that must be valid: for each about 4 kB an
- *  axis, 5 kB more with flicker noise, and 0.3 kB for each Gauss-Markov term, 0.6 kB for each
- *  sinusoid. 0 if `count` is 0 or this machine cannot address them. */
+ *  axis (4.6 kB of more than 32), 5 kB more with flicker noise, and 0.3 kB for each Gauss-Markov
+ *  term, 0.6 kB for each sinusoid. 0 if `count` is 0 or this machine cannot address them. */
 IMK_API size_t imk_sensor_size(const imk_model *model, const imk_sensor_settings *settings);
 
 /** Validate and start.

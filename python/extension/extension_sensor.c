@@ -81,9 +81,8 @@ typedef struct truth {
 
 static bool refuse_truth(const char *name, const sensor *s, size_t components)
 {
-    PyErr_Format(
-        PyExc_ValueError, "%s: expected %zu numbers for all sensors%s, float64 and contiguous",
-        name, components, s->count > 1 ? ", or that many rows with a number for each sensor" : "");
+    PyErr_Format(PyExc_ValueError, "%s: expected %zu numbers for all sensors%s", name, components,
+                 s->count > 1 ? ", or that many rows with a number for each sensor" : "");
     return false;
 }
 

@@ -44,6 +44,28 @@ def of_numeric(values: Any, name: str) -> Any:
     return made.astype(float) if made.dtype == found.float16 else found.asarray(made)
 
 
+def of_rows(values: Any, name: str) -> Array:
+    """A contiguous array of float64: of a number, of numbers, or of rows of them; copied if it is not
+    one.
+
+    Raises TypeError or ValueError for what is neither.
+    """
+    if numpy is not None:
+        return numpy.ascontiguousarray(of_numeric(values, name), float)
+    try:
+        values = memoryview(values).tolist()
+    except TypeError:
+        pass
+    if isinstance(values, (int, float)):
+        return _view(array.array("d", [values]))
+    rows = [memoryview(row).tolist() if isinstance(row, (array.array, memoryview)) else row
+            for row in values]
+    if not all(isinstance(row, (list, tuple)) and len(row) == len(rows[0]) for row in rows):
+        return _view(array.array("d", map(float, rows)))
+    return matrix(_view(array.array("d", [float(x) for row in rows for x in row])), len(rows),
+                  len(rows[0]) if rows else 0)
+
+
 def of_bytes(numbers: bytes, columns: int = 1, column: int = 0) -> Array:
     """A column of a matrix of float64 in memory; read only."""
     return of_buffer(memoryview(numbers).cast("d")[column::columns])

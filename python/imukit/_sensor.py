@@ -21,7 +21,8 @@ class Sensor:
     temperature  True: each step is given one
 
     The readings are, byte for byte, those of simulate() for this motion as a recorded one. Noise is
-    made 512 samples ahead, so one step in 512 takes longer. One thread at a time may step a sensor.
+    made 512 samples ahead, so one step in 512 takes longer (many sensors take turns). One thread at
+    a time may step a sensor.
 
     Raises imukit.Error: a model that is not valid, or whose timing moves samples (rate_error,
     jitter, skew). Source: include/imukit/sensor.h.
@@ -52,7 +53,7 @@ class Sensor:
             names += [f"{sensor}_{'xyz'[k] if k < 3 else k}" for k in axes]
         return tuple(names)
 
-    def step(self, angular_rate: Any, specific_force: Any, angular_acceleration: Any = None, *,
+    def step(self, angular_rate: Any, specific_force: Any = None, angular_acceleration: Any = None, *,
              temperature: Any = None, temperature_rate: Any = None,
              out: Any = None) -> _arrays.Array:
         """The next reading.
@@ -62,15 +63,19 @@ class Sensor:
         angular_acceleration  [rad/s^2]; None: 0. Only accelerometers with a lever arm need it
         temperature           in the middle of the interval [K]
         temperature_rate      [K/s]; None: 0
-        out                   float64 array to be written; None: a new one
+        out                   contiguous float64 array to be written; None: a new one
 
         Vectors are three numbers, in body axes forward, right, down, for all sensors; or an array 3
-        x count with a column for each. Temperatures are a number, or a vector of count.
+        x count with a column for each. For one sensor angular_rate may have six: rate and force.
+        Temperatures are a number, or a vector of count. Numbers of any real type, in arrays or
+        lists, are taken; contiguous float64 is read without a copy.
         Returns a vector of a number for each channel; channels x count where count is above 1. SI
         units, or counts where the model has a sensitivity. A truth that is not finite makes the
         readings that depend on it NaN in this step, and leaves nothing behind.
         Raises ValueError: another shape, or a temperature that is missing or one too many.
         """
+        if specific_force is None and self.count == 1 and angular_rate is not None:
+            angular_rate, specific_force = self._halves(angular_rate)
         for name, given in (("angular_rate", angular_rate), ("specific_force", specific_force)):
             if given is None:
                 raise TypeError(f"{name}: expected three numbers, and there is None")
@@ -84,8 +89,23 @@ class Sensor:
             out = _arrays.empty(len(self.channels) * self.count)
             if self.count > 1:
                 out = _arrays.matrix(out, len(self.channels), self.count)
-        return self._core.step(angular_rate, specific_force, angular_acceleration, temperature,
-                               temperature_rate, out)
+        try:
+            return self._core.step(angular_rate, specific_force, angular_acceleration, temperature,
+                                   temperature_rate, out)
+        except (BufferError, TypeError, ValueError):
+            pass  # what can be converted is, and the rest refused, below
+        rate, force, acceleration, kelvin, slope = (
+            None if values is None else _arrays.of_rows(values, name) for name, values in (
+                ("angular_rate", angular_rate), ("specific_force", specific_force),
+                ("angular_acceleration", angular_acceleration), ("temperature", temperature),
+                ("temperature_rate", temperature_rate)))
+        return self._core.step(rate, force, acceleration, kelvin, slope, out)
+
+    @staticmethod
+    def _halves(both: Any) -> tuple[Any, Any]:
+        """Rate and force of six numbers; of three, no force."""
+        both = _arrays.of_rows(both, "angular_rate")
+        return (both[:3], both[3:]) if both.shape == (6,) else (both, None)
 
     def dropped(self, row: int, number: int = 0) -> bool:
         """Is the reading of step `row`, from 0, lost (timing.drops)? number: of the sensor."""

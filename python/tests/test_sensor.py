@@ -62,10 +62,42 @@ class Steps(unittest.TestCase):
         self.assertEqual(found.shape, (6, 100))
         with self.assertRaises(ValueError):
             sensor.step(numpy.zeros((100, 3)), numpy.array(GRAVITY), temperature=300.0)
-        with self.assertRaises(ValueError):
-            sensor.step(numpy.zeros((3, 100), "f4"), numpy.array(GRAVITY), temperature=300.0)
-        with self.assertRaises((ValueError, BufferError)):
-            sensor.step(numpy.zeros((3, 200))[:, ::2], numpy.array(GRAVITY), temperature=300.0)
+
+    @unittest.skipIf(numpy is None, "needs NumPy")
+    def test_what_is_converted(self):
+        rates = numpy.arange(24.0).reshape(3, 8) / 16
+        wide = numpy.zeros((3, 16))
+        wide[:, ::2] = rates
+        due = imukit.Sensor("tactical", 100, count=8).step(rates, GRAVITY)
+        for given in (rates.astype("f4"), wide[:, ::2], numpy.asfortranarray(rates), rates.tolist(),
+                      rates.T.copy().T, rates.astype(">f8"), list(rates)):
+            sensor = imukit.Sensor("tactical", 100, count=8)
+            numpy.testing.assert_array_equal(sensor.step(given, GRAVITY), due)
+        sensor = imukit.Sensor("tactical", 100, temperature=True)
+        sensor.step(numpy.zeros(3, int), numpy.float32(GRAVITY), temperature=numpy.float32(300))
+        for wrong in (rates.T, rates + 1j, rates.astype(str), [[0], [0, 1], [2]], numpy.zeros(0)):
+            with self.assertRaises((TypeError, ValueError)):
+                imukit.Sensor("tactical", 100, count=8).step(wrong, GRAVITY)
+        for out in (numpy.zeros((6, 8), "f4"), numpy.zeros((6, 16))[:, ::2],
+                    numpy.zeros((8, 6)).T):
+            with self.assertRaises((ValueError, BufferError)):
+                imukit.Sensor("tactical", 100, count=8).step(rates, GRAVITY, out=out)
+
+    def test_what_is_converted_without_numpy(self):
+        due = list(imukit.Sensor("tactical", 100).step([0, 0.5, 0.25], GRAVITY))
+        single = array.array("f", [0, 0.5, 0.25])
+        for given in ((single, GRAVITY), ((0, 0.5, 0.25), GRAVITY), ([0, 0.5, 0.25, *GRAVITY],),
+                      (memoryview(array.array("d", [0, 9, 0.5, 9, 0.25, 9]))[::2], GRAVITY)):
+            self.assertEqual(list(imukit.Sensor("tactical", 100).step(*given)), due)
+        rows = [[0, 0.5], [0.5, 0.25], [1, 2]]
+        due = imukit.Sensor("tactical", 100, count=2).step(
+            memoryview(array.array("d", sum(rows, []))).cast("B").cast("d", (3, 2)), GRAVITY)
+        for given in (rows, [array.array("f", row) for row in rows]):
+            found = imukit.Sensor("tactical", 100, count=2).step(given, GRAVITY)
+            self.assertEqual(memoryview(found).tolist(), memoryview(due).tolist())
+        for wrong in ([0] * 5, [0] * 3, [[0] * 6]):
+            with self.assertRaises((TypeError, ValueError)):
+                imukit.Sensor("tactical", 100).step(wrong)
 
 
 class Refused(unittest.TestCase):

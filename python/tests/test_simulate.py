@@ -10,6 +10,7 @@ import subprocess
 import tempfile
 import threading
 import unittest
+import warnings
 
 from command import ALONE, COMMAND
 
@@ -312,6 +313,19 @@ class Stated(unittest.TestCase):
         log = imukit.simulate("AHRS", 100, motion=text)
         due = imukit.simulate("AHRS", 100, motion=imukit.Motion.parse(text))
         self.assertEqual(list(log["gyro_z"]), list(due["gyro_z"]))
+
+
+class Temperatures(unittest.TestCase):
+    def test_of_no_sensor(self):
+        with self.assertWarnsRegex(imukit.DataWarning, "write 25degC"):
+            log = imukit.simulate("AHRS", rate=100, duration=1, temperature=25)
+        with self.assertWarnsRegex(imukit.DataWarning, "write 300K"):
+            imukit.compensate(log, "AHRS", temperature="300 degC")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for usual in (298.15, "25 degC", "-90 degC", "190 degC"):
+                log = imukit.simulate("AHRS", rate=100, duration=1, temperature=usual)
+                imukit.compensate(log, "AHRS", temperature=usual)
 
 
 if __name__ == "__main__":

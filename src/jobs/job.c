@@ -3,6 +3,7 @@
 #include "arena_internal.h"
 #include "job_internal.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -47,6 +48,17 @@ void imki_find(imk_findings *findings, imk_finding_level level, const char *code
     snprintf(made->name, sizeof made->name, "%s", name ? name : "");
     for (size_t i = 0; i < count && i < IMK_FINDING_NUMBERS; i++)
         made->number[i] = numbers[i];
+}
+
+bool imki_find_temperature(imk_findings *findings, double temperature)
+{
+    const double zero = 273.15;
+    if (isnan(temperature) || imki_is_of_sensors(temperature))
+        return false;
+    imki_find(findings, IMK_FINDING_WARNING, "temperature_of_no_sensor", NULL,
+              IMKI_NUMBERS(temperature, temperature - zero, imki_is_of_sensors(temperature + zero),
+                           imki_is_of_sensors(temperature - zero)));
+    return true;
 }
 
 imk_status imki_fail(imk_findings *findings, imk_error *error, imk_status status, const char *code,

@@ -9,6 +9,17 @@
 void imki_find(imk_findings *findings, imk_finding_level level, const char *code, const char *name,
                size_t count, const double *numbers);
 
+/* Does an inertial sensor work at this temperature [K]? Military ranges begin at -55 degC; sensors
+ * for drill holes end at 150 to 200 degC. */
+static inline bool imki_is_of_sensors(double temperature)
+{
+    return temperature > 273.15 - 100 && temperature < 273.15 + 200;
+}
+
+/* A warning if no sensor works at the temperature that is given [K]: most often it is in the other
+ * unit. @return true if it was given */
+bool imki_find_temperature(imk_findings *findings, double temperature);
+
 /* A failure: adds it and fills the error, whose field is the name up to a tab. @return status */
 imk_status imki_fail(imk_findings *findings, imk_error *error, imk_status status, const char *code,
                      const char *name, size_t count, const double *numbers);

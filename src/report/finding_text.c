@@ -742,6 +742,11 @@ static const struct message {
      "{record} has no column {name}: {model} describes {0} {1k} axes, and all of them are needed"},
     {"axes_do_not_match", "{record} has {0} {1k} columns, but {model} describes {2}; name the "
                           "log's columns with --columns, and write - for a column to skip"},
+    {"temperature_of_no_sensor",
+     "the temperature is {0.6g} K, which is {1.6g} degC, and no inertial sensor works below -100 "
+     "or "
+     "above 200 degC{2?}: write {0.6g}degC if that is meant{?}{3?}: write {1.6g}K if that is "
+     "meant{?}"},
     {"simulate:temperature_unknown",
      "the model's temperature terms are left out: add --temperature 25degC or a profile"},
     {"simulate:no_attitude", "the magnetometer is left out: {record} states rates and forces, but "

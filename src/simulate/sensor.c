@@ -100,6 +100,7 @@ static size_t divide(const imk_model *model, const imk_sensor_settings *settings
     imk_sensor made = {.count = count, .places = places, .channels = channels};
     *sensor = imki_take(parts, sizeof made);
     made.channel = imki_take(parts, count * channels * sizeof *made.channel);
+    made.response = imki_take(parts, imki_row_places(count) * sizeof(double));
     made.number = imki_take(parts, IMKI_SENSOR_NUMBERS * channels * places * sizeof(double));
     made.rows = imki_take(parts, IMKI_SENSOR_ROWS * imki_row_places(count) * sizeof(double));
     const size_t zero = parts->used;
@@ -109,6 +110,9 @@ static size_t divide(const imk_model *model, const imk_sensor_settings *settings
         if (has_hysteresis(settings, kind == IMK_GYRO ? &model->gyro : &model->accel))
             made.hysteresis[kind] = imki_take(parts, count * sizeof(imk_hysteresis));
     made.noise = imki_take(parts, imki_noise_places(count == 1, count) * channels * block);
+    if (count > IMKI_GROUP)
+        made.rest = imki_take(parts, imki_noise_places(false, count) * channels * IMKI_LEAD *
+                                         sizeof(double));
     made.block = imki_take(parts, scratch);
     if (*sensor) {
         memset(*sensor, 0, zero);
@@ -122,10 +126,10 @@ size_t imk_sensor_size(const imk_model *model, const imk_sensor_settings *settin
     imki_parts group = {NULL, 0}, parts = {NULL, 0};
     imk_sensor_settings of_group = *settings;
     imk_sensor *none;
-    of_group.count = IMKI_GROUP;
+    of_group.count = 2 * IMKI_GROUP;
     divide(model, &of_group, &group, &none);
     const size_t states = states_of(model, channels_of(model));
-    const size_t one = group.used / IMKI_GROUP + 64 + states; /* no sensor needs more */
+    const size_t one = group.used / IMKI_GROUP + 64 + states; /* more than a sensor needs */
     if (settings->count == 0 || settings->count > SIZE_MAX / 2 / one - IMKI_GROUP)
         return 0;
     divide(model, settings, &parts, &none);
@@ -234,9 +238,12 @@ imk_status imk_sensor_start(const imk_model *model, const imk_sensor_settings *s
     status = start_responses(made, model, error);
     if (status == IMK_OK)
         status = start_channels(made, model, &parts, error);
-    if (status == IMK_OK)
-        *sensor = made;
-    return status;
+    if (status != IMK_OK)
+        return status;
+    for (size_t first = 0; first < made->count; first += IMKI_GROUP)
+        imki_sensor_make_noise(made, first);
+    *sensor = made;
+    return IMK_OK;
 }
 
 size_t imk_sensor_channels(const imk_sensor *sensor)

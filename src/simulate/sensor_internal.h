@@ -53,7 +53,9 @@ struct imk_sensor {
     double *number;                     /* [imki_sensor_number][channel][place] */
     /* Groups of sensors one after another, each [channel][sample of the block][place]. */
     double *noise;
+    double *rest;  /* alike, IMKI_LEAD samples: what was left of a block when the next was made */
     double *block; /* scratch: IMKI_INTERLEAVED blocks */
+    double *response; /* scratch: of a channel of a group that is not whole */
 };
 
 /* Room in arrays of numbers: a single sensor is a pair of samples. */
@@ -68,13 +70,35 @@ static inline size_t imki_noise_places(bool single, size_t count)
     return single ? 1 : (count + IMKI_INTERLEAVED - 1) / IMKI_INTERLEAVED * IMKI_INTERLEAVED;
 }
 
-/* The noise of the group that begins with this sensor. @param places  of each sample */
-static inline double *imki_group_noise(const imk_sensor *s, size_t first, size_t *places)
+/* The groups make their blocks one after another, over the last samples of the block before. */
+enum { IMKI_LEAD = 64 };
+
+/* So many samples before its end the group that begins with this sensor makes the next block. */
+static inline size_t imki_lead(const imk_sensor *s, size_t first)
+{
+    const size_t groups = (s->count + IMKI_GROUP - 1) / IMKI_GROUP;
+    return first / IMKI_GROUP * IMKI_LEAD / groups;
+}
+
+static inline size_t imki_group_places(const imk_sensor *s, size_t first)
 {
     const size_t left = s->count - first;
-    *places = imki_noise_places(s->count == 1, left < IMKI_GROUP ? left : IMKI_GROUP);
+    return imki_noise_places(s->count == 1, left < IMKI_GROUP ? left : IMKI_GROUP);
+}
+
+/* The noise of a group, and the rest of its block before. */
+static inline double *imki_group_noise(const imk_sensor *s, size_t first)
+{
     return s->noise + first * s->channels * IMK_NOISE_BLOCK;
 }
+
+static inline double *imki_group_rest(const imk_sensor *s, size_t first)
+{
+    return s->rest + first * s->channels * IMKI_LEAD;
+}
+
+/* Make the next block of a group. */
+void imki_sensor_make_noise(imk_sensor *s, size_t first);
 
 static inline double *imki_sensor_numbers(const imk_sensor *s, imki_sensor_number which,
                                           size_t channel)
@@ -93,20 +117,21 @@ static inline double *imki_sensor_row(const imk_sensor *s, int row)
     return s->rows + (size_t)row * imki_row_places(s->count);
 }
 
-/* The output stage of a channel of some sensors: a response becomes a reading. */
-typedef struct imki_output {
-    const imki_channel *form; /* whose numbers are those of all */
-    imki_quantizer quantizer;
-    bool end;                                                 /* of a segment */
-    double *filter, *filter_speed, *residual, *sum, *counted; /* of each sensor */
-    const double *noise;
-} imki_output;
-
-/* @param count  <= IMKI_GROUP
+/* The output stage of a channel of `count` sensors from `first` on: a response becomes a reading.
+ * The state has all it needs: what is handed over on the stack can be slow, because a processor
+ * takes a load for one of something stored just before when their addresses are equal modulo 4096.
+ * @param noise  of this sample
+ * @param count  <= IMKI_GROUP
  * @return true if all readings are finite */
-bool imki_sensor_output(imk_kernel kernel, const imki_output *output, size_t count, double *y);
-bool imki_sensor_output_portable(const imki_output *output, size_t count, double *y);
-bool imki_sensor_output_avx2(const imki_output *output, size_t count, double *y);
-bool imki_sensor_output_avx512(const imki_output *output, size_t count, double *y);
+bool imki_sensor_output(const imk_sensor *s, size_t channel, size_t first, const double *noise,
+                        size_t count, double *y);
+
+/* The same of one instruction set. */
+#define IMKI_SENSOR_OUTPUT(isa)                                                                    \
+    bool imki_sensor_output_##isa(const imk_sensor *s, size_t channel, size_t first,               \
+                                  const double *noise, size_t count, double *y);
+IMKI_SENSOR_OUTPUT(portable)
+IMKI_SENSOR_OUTPUT(avx2)
+IMKI_SENSOR_OUTPUT(avx512)
 
 #endif

@@ -8,10 +8,10 @@
 
 #define KERNEL static inline __attribute__((always_inline))
 
-KERNEL void limit_bands(const imki_output *o, size_t count, double *restrict y)
+KERNEL void limit_bands(const imki_band_limit *form, double *restrict x, double *restrict v,
+                        size_t count, double *restrict y)
 {
-    double *restrict x = o->filter, *restrict v = o->filter_speed;
-    const imki_band_limit limit = o->form->band_limit;
+    const imki_band_limit limit = *form;
     for (size_t i = 0; i < count; i++) {
         const bool started = x[i] - x[i] == 0.0;
         double at = started ? x[i] : y[i], speed = started ? v[i] : 0.0;
@@ -21,10 +21,10 @@ KERNEL void limit_bands(const imki_output *o, size_t count, double *restrict y)
     }
 }
 
-KERNEL void quantize(const imki_output *o, bool end, size_t count, double *restrict y)
+KERNEL void quantize(const imki_quantizer *form, double *restrict residual, double *restrict sum,
+                     double *restrict counted, bool end, size_t count, double *restrict y)
 {
-    double *restrict residual = o->residual, *restrict sum = o->sum, *restrict counted = o->counted;
-    const imki_quantizer quantizer = o->quantizer;
+    const imki_quantizer quantizer = *form;
     for (size_t i = 0; i < count; i++) {
         double r = residual[i], s = sum[i], c = counted[i];
         y[i] = imki_quantized(&quantizer, end, y[i], &r, &s, &c);
@@ -34,13 +34,16 @@ KERNEL void quantize(const imki_output *o, bool end, size_t count, double *restr
     }
 }
 
-KERNEL bool finish(const imki_output *o, size_t count, double *restrict y)
+KERNEL bool finish(const imk_sensor *s, size_t channel, size_t first, const double *restrict noise,
+                   size_t count, double *restrict y)
 {
-    const imki_channel *form = o->form;
-    const double *restrict noise = o->noise;
+#define OF(number) (imki_sensor_numbers(s, number, channel) + first)
+    const imki_channel *form = &s->channel[channel];
+    const imki_quantizer *quantizer = &s->quantizer[channel];
     int64_t lost = 0;
     if (form->band_limit.present)
-        limit_bands(o, count, y);
+        limit_bands(&form->band_limit, OF(IMKI_SENSOR_FILTER), OF(IMKI_SENSOR_FILTER_SPEED), count,
+                    y);
     for (size_t i = 0; i < count; i++)
         y[i] += noise[i];
     if (imki_saturates(form)) {
@@ -48,10 +51,14 @@ KERNEL bool finish(const imki_output *o, size_t count, double *restrict y)
         for (size_t i = 0; i < count; i++)
             y[i] = imki_saturated(y[i], dead_band, range);
     }
-    if (form->quantization.lsb > 0.0 && o->end)
-        quantize(o, true, count, y);
-    else if (form->quantization.lsb > 0.0)
-        quantize(o, false, count, y);
+    if (quantizer->lsb > 0.0) {
+        double *residual = OF(IMKI_SENSOR_RESIDUAL), *sum = OF(IMKI_SENSOR_SUM),
+               *counted = OF(IMKI_SENSOR_COUNTED);
+        if ((s->next + 1) % IMK_NOISE_STEPS == 0) /* the end of a segment */
+            quantize(quantizer, residual, sum, counted, true, count, y);
+        else
+            quantize(quantizer, residual, sum, counted, false, count, y);
+    }
     if (form->resolution > 0.0)
         for (size_t i = 0; i < count; i++)
             y[i] = imki_to_resolution(form->resolution, y[i]);
@@ -61,15 +68,18 @@ KERNEL bool finish(const imki_output *o, size_t count, double *restrict y)
     for (size_t i = 0; i < count; i++)
         lost |= y[i] - y[i] == 0.0 ? 0 : 1;
     return lost == 0;
+#undef OF
 }
 
 /* Whole groups, and a single sensor, have a loop of known length. */
 #define COMPILE_FOR(isa, target)                                                                   \
-    target bool imki_sensor_output_##isa(const imki_output *output, size_t count, double *y)       \
+    target bool imki_sensor_output_##isa(const imk_sensor *s, size_t channel, size_t first,        \
+                                         const double *noise, size_t count, double *y)             \
     {                                                                                              \
         if (count == IMKI_GROUP)                                                                   \
-            return finish(output, IMKI_GROUP, y);                                                  \
-        return count == 1 ? finish(output, 1, y) : finish(output, count, y);                       \
+            return finish(s, channel, first, noise, IMKI_GROUP, y);                                \
+        return count == 1 ? finish(s, channel, first, noise, 1, y)                                 \
+                          : finish(s, channel, first, noise, count, y);                            \
     }
 
 #endif

@@ -5,15 +5,14 @@
 
 COMPILE_FOR(portable, )
 
-bool imki_sensor_output(imk_kernel kernel, const imki_output *output, size_t count, double *y)
+bool imki_sensor_output(const imk_sensor *s, size_t channel, size_t first, const double *noise,
+                        size_t count, double *y)
 {
 #if defined(__x86_64__) && defined(__GNUC__)
-    if (kernel == IMK_KERNEL_AVX512)
-        return imki_sensor_output_avx512(output, count, y);
-    if (kernel == IMK_KERNEL_AVX2)
-        return imki_sensor_output_avx2(output, count, y);
-#else
-    (void)kernel;
+    if (s->random.kernel == IMK_KERNEL_AVX512)
+        return imki_sensor_output_avx512(s, channel, first, noise, count, y);
+    if (s->random.kernel == IMK_KERNEL_AVX2)
+        return imki_sensor_output_avx2(s, channel, first, noise, count, y);
 #endif
-    return imki_sensor_output_portable(output, count, y);
+    return imki_sensor_output_portable(s, channel, first, noise, count, y);
 }

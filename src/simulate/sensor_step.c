@@ -44,20 +44,40 @@ static void make_noise_of_eight(imk_sensor *s, size_t first, size_t channel, dou
     imki_interleave(s->random.kernel, made, noise, places);
 }
 
-static void make_noise(imk_sensor *s)
+void imki_sensor_make_noise(imk_sensor *s, size_t first)
 {
     if (s->count == 1) {
         make_noise_of_one(s);
         return;
     }
-    for (size_t first = 0; first < s->count; first += IMKI_GROUP) {
-        size_t places;
-        double *noise = imki_group_noise(s, first, &places);
-        for (size_t i = 0; i < places; i += IMKI_INTERLEAVED)
-            for (size_t c = 0; c < s->channels; c++)
-                make_noise_of_eight(s, first + i, c, noise + c * IMK_NOISE_BLOCK * places + i,
-                                    places);
-    }
+    const size_t places = imki_group_places(s, first);
+    double *noise = imki_group_noise(s, first);
+    for (size_t i = 0; i < places; i += IMKI_INTERLEAVED)
+        for (size_t c = 0; c < s->channels; c++)
+            make_noise_of_eight(s, first + i, c, noise + c * IMK_NOISE_BLOCK * places + i, places);
+}
+
+/* The next block of a group whose turn it is; what is left of the one before is kept. */
+static void refill(imk_sensor *s, size_t first)
+{
+    const size_t lead = imki_lead(s, first), places = imki_group_places(s, first);
+    if (s->next == 0 || (s->next + lead) % IMK_NOISE_BLOCK != 0)
+        return;
+    const double *left = imki_group_noise(s, first) + (IMK_NOISE_BLOCK - lead) * places;
+    for (size_t c = 0; c < s->channels && lead > 0; c++)
+        memcpy(imki_group_rest(s, first) + c * IMKI_LEAD * places,
+               left + c * IMK_NOISE_BLOCK * places, lead * places * sizeof *left);
+    imki_sensor_make_noise(s, first);
+}
+
+/* The noise of this step of the first channel of a group. @param stride  to the next channel */
+static const double *noise_now(const imk_sensor *s, size_t first, size_t *stride)
+{
+    const size_t within = (size_t)(s->next % IMK_NOISE_BLOCK), places = imki_group_places(s, first);
+    const size_t until = IMK_NOISE_BLOCK - imki_lead(s, first);
+    *stride = (within < until ? (size_t)IMK_NOISE_BLOCK : (size_t)IMKI_LEAD) * places;
+    return within < until ? imki_group_noise(s, first) + within * places
+                          : imki_group_rest(s, first) + (within - until) * places;
 }
 
 /* ---- truth ---- */
@@ -155,50 +175,38 @@ static void spread_hysteresis(imk_sensor *s)
 /* ---- a step ---- */
 
 /* What is needed of the noise of the next group, sooner than the processor sees. */
-static void fetch_noise(const imk_sensor *s, size_t first, size_t within)
+static void fetch_noise(const imk_sensor *s, size_t first)
 {
-    size_t places;
+    size_t stride;
     if (first >= s->count)
         return;
-    const double *noise = imki_group_noise(s, first, &places) + within * places;
+    const size_t places = imki_group_places(s, first);
+    const double *noise = noise_now(s, first, &stride);
     for (size_t c = 0; c < s->channels; c++)
         for (size_t i = 0; i < places; i += 8)
-            __builtin_prefetch(noise + c * IMK_NOISE_BLOCK * places + i);
+            __builtin_prefetch(noise + c * stride + i);
 }
 
 static bool step_group(imk_sensor *s, size_t first, size_t count, double *readings)
 {
-    IMKI_ALIGNED double part[IMKI_GROUP];
-    size_t places;
-    const size_t within = (size_t)(s->next % IMK_NOISE_BLOCK);
-    const double *noise = imki_group_noise(s, first, &places) + within * places;
+    size_t stride;
+    const double *noise = noise_now(s, first, &stride);
     bool finite = true;
-    fetch_noise(s, first + IMKI_GROUP, within);
+    fetch_noise(s, first + IMKI_GROUP);
     for (size_t kind = 0, c = 0; kind < 2; kind++) {
         imki_exposure *exposure = &s->exposure[kind];
         for (const size_t end = c + s->of_kind[kind]; c < end; c++) {
-            double *place = readings + c * s->count + first, *y = count < IMKI_GROUP ? part : place;
-            double *numbers[IMKI_SENSOR_NUMBERS];
-            for (int i = 0; i < IMKI_SENSOR_NUMBERS; i++)
-                numbers[i] = imki_sensor_numbers(s, (imki_sensor_number)i, c) + first;
-            exposure->bias = numbers[IMKI_SENSOR_BIAS];
-            exposure->scale = numbers[IMKI_SENSOR_SCALE];
+            double *place = readings + c * s->count + first;
+            double *y = count < IMKI_GROUP ? s->response : place;
+            exposure->bias = imki_sensor_numbers(s, IMKI_SENSOR_BIAS, c) + first;
+            exposure->scale = imki_sensor_numbers(s, IMKI_SENSOR_SCALE, c) + first;
             if (s->count == 1)
                 imki_distort_pair(&s->axis[c], exposure, y);
             else
                 imki_distort_chunks(s->random.kernel, &s->axis[c], exposure, 1, y);
-            const imki_output output = {&s->channel[c],
-                                        s->quantizer[c],
-                                        (s->next + 1) % IMK_NOISE_STEPS == 0,
-                                        numbers[IMKI_SENSOR_FILTER],
-                                        numbers[IMKI_SENSOR_FILTER_SPEED],
-                                        numbers[IMKI_SENSOR_RESIDUAL],
-                                        numbers[IMKI_SENSOR_SUM],
-                                        numbers[IMKI_SENSOR_COUNTED],
-                                        noise + c * IMK_NOISE_BLOCK * places};
-            finite &= imki_sensor_output(s->random.kernel, &output, count, y);
-            if (y == part)
-                memcpy(place, part, count * sizeof *part);
+            finite &= imki_sensor_output(s, c, first, noise + c * stride, count, y);
+            if (y != place)
+                memcpy(place, y, count * sizeof *y);
         }
     }
     return finite;
@@ -209,8 +217,6 @@ static imk_status step(imk_sensor *s, const imk_sensor_truth *all, const imk_sti
                        double *readings)
 {
     bool finite = true;
-    if (s->next % IMK_NOISE_BLOCK == 0)
-        make_noise(s);
     expose_to_warm_up(s);
     if (all)
         expose_all(s, all);
@@ -218,6 +224,7 @@ static imk_status step(imk_sensor *s, const imk_sensor_truth *all, const imk_sti
         spread_hysteresis(s);
     for (size_t first = 0; first < s->count; first += IMKI_GROUP) {
         const size_t left = s->count - first, count = left < IMKI_GROUP ? left : IMKI_GROUP;
+        refill(s, first);
         if (each)
             expose_each(s, each, first, count);
         expose_to_hysteresis(s, first, count);

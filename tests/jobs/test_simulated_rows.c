@@ -147,6 +147,25 @@ static void test_completed(void **state)
     assert_int_equal(findings.count, 1);
     assert_string_equal(imk_finding_code(&findings.item[0]), "temperature_unknown");
     CHECK_OK(imk_simulate_log_complete(&model, 1.5, 2.0, &settings, &findings, &error));
+    /* Where a sensor works, and where none does: told once, with the unit that is likely meant. */
+    const double temperatures[][2] = {{174, 472}, {298, 25}, {25, 25}, {298, 571.3}, {298, 5000}};
+    const char *const told[] = {NULL, "write 25degC if", "write 25degC if", "write 298.15K if",
+                                "above 200 degC"};
+    const imk_temperature_profile *none = settings.simulation.temperature;
+    for (size_t i = 0; i < 5; i++) {
+        char text[512];
+        const imk_temperature_profile profile = {
+            .point_count = 2, .time = (const double[]){0, 1}, .temperature = temperatures[i]};
+        imk_findings found = {.count = 0};
+        settings.simulation.temperature = &profile;
+        CHECK_OK(imk_simulate_log_complete(&model, 1.5, 2.0, &settings, &found, &error));
+        assert_int_equal(found.count, told[i] != NULL);
+        if (told[i]) {
+            imk_finding_text(&found.item[0], text, sizeof text);
+            assert_non_null(strstr(text, told[i]));
+        }
+    }
+    settings.simulation.temperature = none;
     assert_int_equal(settings.rows, 150);
     CHECK_OK(
         imk_simulate_log_complete(&model, whole_motion, HUGE_VAL, &settings, &findings, &error));

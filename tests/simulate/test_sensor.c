@@ -294,7 +294,7 @@ static void test_at_rest(void **state)
 static void test_side_by_side(void **state)
 {
     (void)state;
-    enum { MANY = 45, STEPS = 600 };
+    enum { MANY = 45, STEPS = 1100 };
     static truth t;
     static double readings[6 * MANY], copy[QUANTITIES][MANY];
     make_truth(&t);

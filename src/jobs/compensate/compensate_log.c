@@ -85,6 +85,7 @@ static imk_status check_model(stream *s, imk_error *error)
             return imki_fail(&log->findings, error, IMK_ERROR_DIMENSION, "temperature_counts", term,
                              0, NULL);
     }
+    (void)imki_find_temperature(&log->findings, log->settings.temperature);
     if (log->model.residual_of[0])
         imki_find(&log->findings, IMK_FINDING_WARNING, "residual", log->model.residual_of, 0, NULL);
     if (log->taken_out.count == 0)

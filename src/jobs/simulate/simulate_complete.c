@@ -26,6 +26,9 @@ static void find_temperature(const imk_model *model, const imk_simulation *s,
         (has_temperature_terms(&model->gyro) || has_temperature_terms(&model->accel) ||
          has_temperature_terms(&model->mag)))
         imki_find(findings, IMK_FINDING_WARNING, "simulate:temperature_unknown", NULL, 0, NULL);
+    for (size_t i = 0; s->temperature && i < s->temperature->point_count; i++)
+        if (imki_find_temperature(findings, s->temperature->temperature[i]))
+            break;
 }
 
 /* A magnetometer needs a field, and a motion with an attitude. */

@@ -2,11 +2,7 @@
 /* What the verdict says of a sweep of temperature. */
 #include "calibrate_message_internal.h"
 
-static bool is_of_sensors(double temperature)
-{
-    /* Military ranges begin at -55 degC; sensors for drill holes end at 150 to 200 degC. */
-    return temperature > 273.15 - 100 && temperature < 273.15 + 200;
-}
+#include "jobs/job_internal.h"
 
 /* Temperatures in which no sensor works are in another unit: kelvins and degrees Celsius, where the
  * one is read as the other, are. Degrees Fahrenheit are not told. */
@@ -16,11 +12,11 @@ static void add_temperature_unit(imk_verdict *v, const imk_calibrate_record *log
     const imk_thermal_findings *f = log->thermal;
     const int column = imk_log_find(&log->log, IMK_QUANTITY_TEMPERATURE, -1);
     const char *unit = column < 0 ? "" : log->log.column[column].unit.text, *likely = NULL;
-    if (is_of_sensors(f->minimum) && is_of_sensors(f->maximum))
+    if (imki_is_of_sensors(f->minimum) && imki_is_of_sensors(f->maximum))
         return;
-    if (is_of_sensors(f->minimum - zero) && is_of_sensors(f->maximum - zero))
+    if (imki_is_of_sensors(f->minimum - zero) && imki_is_of_sensors(f->maximum - zero))
         likely = "K";
-    else if (is_of_sensors(f->minimum + zero) && is_of_sensors(f->maximum + zero))
+    else if (imki_is_of_sensors(f->minimum + zero) && imki_is_of_sensors(f->maximum + zero))
         likely = "degC";
     imki_calibrate_add(
         v, imki_calibrate_say(
