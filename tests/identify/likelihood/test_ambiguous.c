@@ -332,7 +332,7 @@ static void test_hidden_white_noise(void **state)
         skip();
     const truth t = {.quantization = 0.6, .white = 1, .bias_instability = 0.6};
     size_t ambiguous = 0;
-    for (uint64_t seed = 1; seed <= 5 * RECORDS; seed++) {
+    for (uint64_t seed = 1; seed <= 2 * RECORDS; seed++) {
         const imk_identification r = identify(&t, seed);
         const imk_estimate *n = &r.term[IMK_NOISE_WHITE];
         ambiguous += n->lower <= 0;
