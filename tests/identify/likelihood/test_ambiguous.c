@@ -310,7 +310,7 @@ static void test_undetermined(void **state)
     (void)state;
     const truth t = {.quantization = 100, .white = 1};
     size_t doubts = 0;
-    for (uint64_t seed = 1; seed <= records_of(3 * RECORDS); seed++) {
+    for (uint64_t seed = 1; seed <= records_of(2 * RECORDS); seed++) {
         const imk_identification r = identify(&t, seed);
         bool wide = false;
         for (int term = IMK_NOISE_QUANTIZATION; term <= IMK_NOISE_WHITE; term++)
