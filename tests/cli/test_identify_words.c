@@ -173,7 +173,7 @@ static const char limits[] =
 static void test_length(void **state)
 {
     (void)state;
-    make_log("for (c = 2; c <= 7; c++) $c += (t > 450) + sin(6.2831853 * 2.7 * t) / 2; if (NR % "
+    make_log("for (c = 2; c <= 7; c++) $c += (t > 450) + sin(6.2831853 * 2.7 * t) / 20; if (NR % "
              "4001 == 0) $2 += 10; if (NR % 300 == 0) next");
     identify_log("");
     check_first("Usable with care: ");

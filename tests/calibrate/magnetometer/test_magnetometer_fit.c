@@ -24,7 +24,7 @@ static const mag_bench_plan turned = {
  * chance of 1e-6 to be fewer, if they were independent; each number by itself as well. */
 static void check_coverage(const mag_bench_plan *plan, uint64_t seed)
 {
-    const uint32_t benches = check_runs(80);
+    const uint32_t benches = check_runs(60);
     size_t held[IMK_MAGNETOMETER_PARAMETERS] = {0};
     for (uint32_t n = 0; n < benches; n++) {
         CHECK_OK(mag_bench_run(&bench, plan, seed, n));
