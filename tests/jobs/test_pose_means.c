@@ -40,7 +40,7 @@ static void intervals_hold_the_truth(void **state)
     };
     for (size_t i = 0; i < sizeof plans / sizeof *plans; i++)
         if (!check_skips(i, 3))
-            check_coverage(&plans[i], check_runs(i < 2 ? 40 : 24));
+            check_coverage(&plans[i], check_runs(i < 2 ? 100 : 40));
 }
 
 /* One table by the job. */

@@ -279,7 +279,7 @@ static void test_what_is_missing(void **state)
 static void test_coverage(void **state)
 {
     (void)state;
-    const uint32_t benches = check_runs(32);
+    const uint32_t benches = check_runs(48);
     multiposition_session *b = start();
     coverage_count count = {0};
     for (uint32_t run = 0; run < benches; run++)
@@ -318,7 +318,7 @@ static void test_poses_are_off_not_turns(void **state)
 static void test_bad_poses(void **state)
 {
     (void)state;
-    const uint32_t benches = check_quick() ? 2 : 16;
+    const uint32_t benches = check_quick() ? 2 : 24;
     multiposition_session *b = start();
     coverage_count count = {0};
     for (uint32_t run = 0; run < benches; run++)

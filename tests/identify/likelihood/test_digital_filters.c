@@ -7,7 +7,7 @@
 #include "identify/identify_values.h"
 #include "imukit/noise.h"
 
-enum { N = 60000, TAPS = 5, RUNS = 3 };
+enum { N = 60000, TAPS = 5, RUNS = 5 };
 
 typedef struct filter {
     size_t taps;
