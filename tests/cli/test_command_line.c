@@ -189,7 +189,8 @@ static void test_whole_numbers(void **state)
     for (size_t i = 0; i < sizeof options / sizeof options[0]; i++) {
         const char *name = options[i].option;
         for (size_t k = 0; k < sizeof no_numbers / sizeof no_numbers[0]; k++) {
-            if (check_skips(i + k, 4))
+            /* How numbers are read is the same for all: each further option tries two. */
+            if ((i >= 4 && (i + k) % 4 != 0) || check_skips(i + k, 4))
                 continue;
             snprintf(line, sizeof line, "$I %s --%s %s", options[i].verb, name, no_numbers[k]);
             assert_int_equal(run(line), 2);

@@ -9,8 +9,8 @@
 #define CHANGE "awk -F, -v OFS=, 'NR == 1 { print; next } { t = $1; %s; print }'"
 
 /* A quarter of an hour of three gyros and three accelerometers at 20 Hz. The awk program
- * changes a row. */
-static void make_log(const char *change)
+ * changes a row; of the columns, time first, so many are kept. */
+static void make_columns(int columns, const char *change)
 {
     char line[1200];
     put("model.yaml", "imukit: 1\n"
@@ -18,17 +18,30 @@ static void make_log(const char *change)
                       "accel: {noise: {velocity_random_walk: 0.05 m/s/sqrt(h)}}\n");
     assert_int_equal(
         run("$I simulate model.yaml --rate 20Hz --duration 15min --seed 4 -o sound.csv"), 0);
-    snprintf(line, sizeof line, CHANGE " sound.csv > log.csv", change);
+    snprintf(line, sizeof line, CHANGE " sound.csv | cut -d, -f1-%d > log.csv", change, columns);
     assert_int_equal(run(line), 0);
 }
 
-/* Half an hour of three gyros at 100 Hz. */
-static void make_long_log(void)
+static void make_log(const char *change)
 {
+    make_columns(7, change);
+}
+
+/* Where accelerometers add nothing. */
+static void make_gyros(const char *change)
+{
+    make_columns(4, change);
+}
+
+/* Three gyros at 100 Hz. */
+static void make_long_log(int minutes)
+{
+    char line[200];
     put("gyros.yaml", "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h), "
                       "bias_instability: 8 deg/h}}\n");
-    assert_int_equal(
-        run("$I simulate gyros.yaml --rate 100Hz --duration 30min --seed 4 -o long.csv"), 0);
+    snprintf(line, sizeof line,
+             "$I simulate gyros.yaml --rate 100Hz --duration %dmin --seed 4 -o long.csv", minutes);
+    assert_int_equal(run(line), 0);
 }
 
 static void identify_log(const char *options)
@@ -75,7 +88,7 @@ static void test_sound(void **state)
 static void test_step(void **state)
 {
     (void)state;
-    make_log("if (t > 450) $3 += 1");
+    make_gyros("if (t > 450) $3 += 1");
     identify_log("");
     check_first("Usable with care: the slow terms of gyro_y include jumps of the level.\n");
     check_contains(out, "\nJumps of the level: gyro_y.\n", "list");
@@ -97,7 +110,7 @@ static void test_json(void **state)
     (void)state;
     if (check_quick())
         return;
-    make_log("if (t > 450) $3 += 1");
+    make_gyros("if (t > 450) $3 += 1");
     identify_log("--json");
     json_t *root = json_loads(out, 0, NULL);
     json_t *usability = json_object_get(json_object_get(root, "result"), "usability");
@@ -112,8 +125,9 @@ static void test_json(void **state)
 static void test_vibration(void **state)
 {
     (void)state;
-    make_log("s = sin(6.2831853 * 2.7 * t) + sin(6.2831853 * 5.4 * t) / 2; $2 += s / 20; $3 += s / "
-             "15");
+    make_gyros(
+        "s = sin(6.2831853 * 2.7 * t) + sin(6.2831853 * 5.4 * t) / 2; $2 += s / 20; $3 += s / "
+        "15");
     identify_log("--verbose");
     check_contains(out, "vibrates (a fan, a motor, the building), at 2.", "tones");
     if (check_quick()) {
@@ -123,7 +137,7 @@ static void test_vibration(void **state)
     identify_log("");
     check_contains(out, "Vibration of what the sensor stands on, in gyro_x and gyro_y.", "list");
     assert_null(strstr(out, "averages"));
-    make_log("$2 += sin(6.2831853 * 2.7 * t) / 20");
+    make_gyros("$2 += sin(6.2831853 * 2.7 * t) / 20");
     identify_log("--verbose");
     assert_null(strstr(out, "what the sensor stands on"));
     check_contains(out, "2.7 Hz", "tone");
@@ -134,10 +148,10 @@ static void test_vibration(void **state)
 static void test_averages(void **state)
 {
     (void)state;
-    make_long_log();
+    make_long_log(11);
     assert_int_equal(run("awk -F, -v OFS=, 'NR == 1 { print; next } { for (c = 2; c <= 4; c++) { v "
                          "= $c; for (k = 4; k > 0; k--) { h[c, k] = h[c, k - 1]; v += h[c, k] } "
-                         "h[c, 0] = $c; $c = v / 5 } } NR > 6 && NR < 60000' long.csv > log.csv"),
+                         "h[c, 0] = $c; $c = v / 5 } } NR > 6 && NR < 60007' long.csv > log.csv"),
                      0);
     identify_log("--verbose");
     check_contains(out, "or the logger wrote averages of several samples", out);
@@ -159,7 +173,7 @@ static const char limits[] =
 static void test_length(void **state)
 {
     (void)state;
-    make_log("for (c = 2; c <= 7; c++) $c += (t > 450) + sin(6.2831853 * 2.7 * t) / 2; if (NR % "
+    make_log("for (c = 2; c <= 7; c++) $c += (t > 450) + sin(6.2831853 * 2.7 * t) / 20; if (NR % "
              "4001 == 0) $2 += 10; if (NR % 300 == 0) next");
     identify_log("");
     check_first("Usable with care: ");
@@ -173,7 +187,7 @@ static void test_length(void **state)
 static void test_filter_of_the_driver(void **state)
 {
     (void)state;
-    make_log("for (i = 2; i < 5; i++) $i = y[i] += 0.2 * ($i - y[i])");
+    make_columns(5, "for (i = 2; i < 5; i++) $i = y[i] += 0.2 * ($i - y[i])");
     identify_log("--verbose");
     check_first("Usable with care: the white noise of the gyros may be larger, behind a low-pass "
                 "filter");
@@ -188,17 +202,17 @@ static void test_filter_of_the_driver(void **state)
 static void test_standing_still(void **state)
 {
     (void)state;
-    make_log("if (t > 300 && t < 390) $4 = z; else z = $4");
+    make_gyros("if (t > 300 && t < 390) $4 = z; else z = $4");
     identify_log("");
     check_first("Usable with care: gyro_z stands still for a part of the log");
     if (check_quick()) {
         sweep();
         return;
     }
-    make_log("if (t > 300 && t < 390) { $3 = y; $4 = z } else { y = $3; z = $4 }");
+    make_gyros("if (t > 300 && t < 390) { $3 = y; $4 = z } else { y = $3; z = $4 }");
     identify_log("");
     check_first("Usable with care: gyro_y and gyro_z stand still for a part of the log");
-    make_log("if (t > 300 && t < 318) $4 = z; else z = $4");
+    make_gyros("if (t > 300 && t < 318) $4 = z; else z = $4");
     identify_log("--strict");
     sweep();
 }
@@ -235,17 +249,17 @@ static void test_numbers_of_no_gyro(void **state)
     (void)state;
     if (check_quick()) /* words alone differ */
         return;
-    make_log("for (c = 2; c < 5; c++) $c *= 57.3");
+    make_columns(5, "for (c = 2; c < 5; c++) $c *= 57.3");
     identify_log("");
     check_first("Usable with care: the numbers of the gyros are no gyro's at rest: a wrong unit");
     if (check_quick()) {
         sweep();
         return;
     }
-    make_log("$3 += 40");
+    make_columns(5, "$3 += 40");
     identify_log("");
     check_first("Usable with care: the numbers of gyro_y are no gyro's at rest");
-    make_log("for (c = 2; c < 5; c++) $c = 9 * $c + 20");
+    make_columns(5, "for (c = 2; c < 5; c++) $c = 9 * $c + 20");
     identify_log("");
     assert_null(strstr(out, "no gyro's"));
     sweep();
@@ -279,8 +293,9 @@ static void test_what_cannot_be_seen(void **state)
 static void test_part_at_rest(void **state)
 {
     (void)state;
-    make_log("a = 40 * sin(t / 2); if (t > 100 && t < 110 || t > 450 && t < 460) $2 += a; if (t > "
-             "480 && t < 490 || t > 850) $3 += a");
+    make_gyros(
+        "a = 40 * sin(t / 2); if (t > 100 && t < 110 || t > 450 && t < 460) $2 += a; if (t > "
+        "480 && t < 490 || t > 850) $3 += a");
     assert_int_equal(run("$I identify log.csv"), 0);
     check_contains(out, "Not usable: the sensor was moved", "first line");
     double after = 0, before = 0;
@@ -307,12 +322,13 @@ static void test_no_model(void **state)
          "gyro_z: 2022 of 180000 samples are off the others by up to 32767 deg/s, too many"},
         {"$4 = NR % 2", "gyro_z: there is no noise in the record: it is smooth or too regular"},
     };
-    make_long_log();
+    make_long_log(30);
     for (size_t k = 0; k < sizeof logs / sizeof logs[0]; k++) {
         if (check_skips(k, 2))
             continue;
         char line[400];
-        snprintf(line, sizeof line, CHANGE " long.csv > log.csv && $I identify log.csv",
+        snprintf(line, sizeof line,
+                 CHANGE " long.csv | cut -d, -f1,4 > log.csv && $I identify log.csv",
                  logs[k].change);
         assert_int_equal(run(line), 1);
         check_contains(err, logs[k].told, err);
@@ -327,16 +343,15 @@ static void test_no_model(void **state)
 static void test_motion_that_wanders(void **state)
 {
     (void)state;
-    make_long_log();
+    make_long_log(30);
     char line[400];
-    snprintf(line, sizeof line, CHANGE " long.csv > log.csv && $I identify log.csv",
+    snprintf(line, sizeof line, CHANGE " long.csv | cut -d, -f1,4 > log.csv && $I identify log.csv",
              "$4 += 0.03 * sin(6.2832 * (p += (0.25 + 0.1 * sin(NR * NR)) / 100))");
     assert_int_equal(run(line), 0);
     double found = 0;
     const char *row = strstr(out, "angle random walk");
     assert_non_null(row);
-    assert_int_equal(sscanf(row, "angle random walk deg/sqrt(h) %*f ± %*f %*f ± %*f %lf", &found),
-                     1);
+    assert_int_equal(sscanf(row, "angle random walk deg/sqrt(h) %lf", &found), 1);
     CHECK_CLOSE(found, 0.3, 0.002);
     sweep();
 }
@@ -348,7 +363,7 @@ static void test_lines_everywhere(void **state)
     (void)state;
     if (check_quick())
         return;
-    make_log("if (NR % 97 == 0) $3 = -999 - NR / 1000");
+    make_gyros("if (NR % 97 == 0) $3 = -999 - NR / 1000");
     assert_int_equal(run("$I identify log.csv"), 1);
     check_contains(err, "gyro_y: 185 of 18000 samples are off the others by up to 1016.9 deg/s",
                    err);
@@ -361,7 +376,7 @@ static void test_one_or_several(void **state)
     (void)state;
     if (check_quick()) /* test_interpolated goes the same way */
         return;
-    make_log("if (NR % 3) $4 *= 0.75");
+    make_gyros("if (NR % 3) $4 *= 0.75");
     identify_log("");
     check_contains(out, "gyro_z looks interpolated from a slower sensor", out);
     if (check_quick()) {

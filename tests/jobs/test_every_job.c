@@ -302,7 +302,7 @@ static void test_memory_that_fails(void **state)
         imk_job job = {.allocator = {resize, &count}};
         check_status(jobs[i].run(&job), IMK_OK, jobs[i].name, __FILE__, __LINE__);
         assert_int_equal(count.live, 0);
-        const size_t calls = count.calls, step = calls / 40 + 1;
+        const size_t calls = count.calls, step = calls / 24 + 1;
         assert_true(calls > 0);
         for (size_t at = 1; at <= calls; at += step) {
             count = (counted){.fails_at = at};

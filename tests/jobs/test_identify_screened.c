@@ -12,7 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROWS = IMK_IDENTIFY_RECORD_ADVISED + 300000, SOUND = 0, FAULTY = 1 };
+/* Little more than is held in memory, 2^7 3^3 5^4: a length whose transform is quick. */
+enum { ROWS = 2160000, SOUND = 0, FAULTY = 1 };
+_Static_assert(ROWS > IMK_IDENTIFY_RECORD_ADVISED, "identified in one pass");
 
 static const double rate = 100;
 static double *samples[2];
@@ -89,7 +91,7 @@ static void test_outliers(void **state)
     imk_identify_log *sound = check_quick() ? NULL : identify(samples[SOUND], true);
     imk_identify_log *whole = check_quick() ? NULL : identify(samples[FAULTY], false);
     imk_identify_log *passing = identify(samples[FAULTY], true);
-    assert_int_equal(passing->screen[0].outliers.count, 12);
+    assert_int_equal(passing->screen[0].outliers.count, 11);
     if (whole)
         check_same(&whole->screen[0], &passing->screen[0]);
     if (whole)

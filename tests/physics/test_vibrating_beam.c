@@ -257,7 +257,7 @@ static void records_identify_as_reduced(void **state)
     settings.seed = 5;
     settings.level = IMK_LEVEL_SLOW;
     for (settings.rate = 10.0; settings.rate <= 1000.0; settings.rate *= 10.0)
-        check_chain(beam, &d, &settings, &exposure, 10, settings.rate < 100.0 ? 9000 : 36000);
+        check_chain(beam, &d, &settings, &exposure, 10, settings.rate < 100.0 ? 9000 : 18000);
     settings.rate = 100.0;
     settings.level = IMK_LEVEL_FULL;
     d.quality = 100.0;

@@ -114,20 +114,24 @@ def across(n):
     return a, np.cross(n, a)
 
 
-def carry(q, model):
-    """Rotations that carry a direction over the turns: product of exponentials of corrected rates.
+def carry(q, models):
+    """Rotations that carry a direction over the turns, of each of some models: product of
+    exponentials of corrected rates.
 
     Samples are means over their intervals; coning to second order by the sample before."""
-    turns = len(q.turn_from)
-    total = np.tile(np.eye(3), (turns, 1, 1))
-    before = np.zeros((turns, 3))
-    response = [(1 + model[s, SCALE, :3, 0])[:, None] * q.direction[s, :3] +
-                model[s, MISALIGNMENT, :3, :3] + model[s, CROSS_AXIS, :3, :3] for s in (0, 1)]
-    inverse = [np.linalg.inv(r) for r in response]
+    shape = (len(models), len(q.turn_from), 3)
+    total = np.broadcast_to(np.eye(3), shape + (3,))
+    before = np.zeros(shape)
+    response = [(1 + models[:, s, SCALE, :3, 0])[..., None] * q.direction[s, :3] +
+                models[:, s, MISALIGNMENT, :3, :3] + models[:, s, CROSS_AXIS, :3, :3]
+                for s in (0, 1)]
+    inverse = [np.swapaxes(np.linalg.inv(r), 1, 2) for r in response]
+    bias = [models[:, s, None, BIAS, :3, 0] for s in (0, 1)]
+    sensitivity = np.swapaxes(models[:, 0, G, :3, :3], 1, 2)
     for k in range(q.turn_end[0] - q.turn_begin[0]):
         sample = q.record[q.turn_begin + k]
-        f = (sample[:, 3:] - model[1, BIAS, :3, 0]) @ inverse[1].T
-        w = (sample[:, :3] - model[0, BIAS, :3, 0] - f @ model[0, G, :3, :3].T) @ inverse[0].T
+        f = (sample[:, 3:] - bias[1]) @ inverse[1]
+        w = (sample[:, :3] - bias[0] - f @ sensitivity) @ inverse[0]
         theta = w * q.dt
         total = exponential(-(theta + np.cross(before, theta) / 12)) @ total
         before = theta
@@ -289,14 +293,14 @@ def system(q, point):
 
         start, end = leaving(point), point.attitude[q.turn_to]
         a, b = across(end)
-        base = carry(q, point.model)
         t = np.zeros((len(q.turn_from), 2, count))
-        for k, place in enumerate(places(q)):
-            if place[0] == 0:
-                high, low = (carry(q, point.moved(q, s * size[k] * np.eye(globals_count)[k], none)
-                                   .model) for s in (1, -1))
-                t[:, :, k] = (miss(q, high, start, end, a, b) -
-                              miss(q, low, start, end, a, b)) / (2 * size[k])
+        gyro = [k for k, place in enumerate(places(q)) if place[0] == 0]
+        steps = [x for k in gyro for x in size[k] * np.eye(globals_count)[k] * [[1], [-1]]]
+        base, *moved = carry(q, np.stack([point.model] + [point.moved(q, x, none).model
+                                                          for x in steps]))
+        for k, high, low in zip(gyro, moved[::2], moved[1::2]):
+            t[:, :, k] = (miss(q, high, start, end, a, b) -
+                          miss(q, low, start, end, a, b)) / (2 * size[k])
         each = np.arange(len(q.turn_from))
         for k in (0, 1, 3, 4):
             change = none.copy()

@@ -499,7 +499,7 @@ static void run_benches(uint32_t benches, int poses, int bad, int known, double 
 static void intervals_hold_the_truth(void **state)
 {
     (void)state;
-    run_benches(check_runs(120), 24, 0, 0, 1.0);
+    run_benches(check_runs(80), 24, 0, 0, 1.0);
 }
 
 static void intervals_hold_with_understated_sigmas(void **state)

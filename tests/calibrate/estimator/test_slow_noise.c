@@ -385,20 +385,20 @@ static void cover(imk_procedure procedure, void (*programme)(session *),
 static void test_rate_table(void **state)
 {
     (void)state;
-    cover(IMK_PROCEDURE_RATE_TABLE, session_rate_steps, slow_flicker, 120);
+    cover(IMK_PROCEDURE_RATE_TABLE, session_rate_steps, slow_flicker, 70);
 }
 
 static void test_tumble(void **state)
 {
     (void)state;
-    cover(IMK_PROCEDURE_TUMBLE, session_tumble, slow_all, 100);
+    cover(IMK_PROCEDURE_TUMBLE, session_tumble, slow_all, 60);
 }
 
 static void test_poses(void **state)
 {
     (void)state;
     coverage_count count = {0};
-    for (uint32_t i = 0; i < check_runs(300); i++) {
+    for (uint32_t i = 0; i < check_runs(150); i++) {
         imk_model truth;
         poses(&shared, 8000 + i, &truth);
         solve(&shared);

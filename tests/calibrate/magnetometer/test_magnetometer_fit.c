@@ -24,7 +24,7 @@ static const mag_bench_plan turned = {
  * chance of 1e-6 to be fewer, if they were independent; each number by itself as well. */
 static void check_coverage(const mag_bench_plan *plan, uint64_t seed)
 {
-    const uint32_t benches = check_runs(150);
+    const uint32_t benches = check_runs(60);
     size_t held[IMK_MAGNETOMETER_PARAMETERS] = {0};
     for (uint32_t n = 0; n < benches; n++) {
         CHECK_OK(mag_bench_run(&bench, plan, seed, n));
@@ -57,11 +57,11 @@ static void test_coverage(void **state)
 
 /* Mean of (estimate - truth)/sigma of the scale. By algebra, |m - h|^2 = F^2 of readings with noise
  * s makes the sphere too large by s^2/F^2, 0.7 % here, which is more than a sigma of a bench. The
- * mean of 100 benches without bias is within 5.3/10 with a probability of 1 - 1e-7. */
+ * mean of 60 benches without bias is within 5.3/sqrt(60) with a probability of 1 - 1e-7. */
 static void test_noise_makes_no_bias(void **state)
 {
     (void)state;
-    const uint32_t benches = check_runs(100);
+    const uint32_t benches = check_runs(60);
     mag_bench_plan plan = turned;
     double sum = 0, size = 0;
     plan.noise = 4e-6;

@@ -41,10 +41,10 @@ static void test_sound_turns_are_kept(void **state)
         {.pairs = 1, .angle = BENCH_TURN, .placement = 1.7e-3},
         {.pairs = 2, .angle = BENCH_TURN, .placement = 8.5e-3, .stated = 0.2},
         {.pairs = 2, .angle = BENCH_TURN, .placement = 1.7e-3, .one_gyro = true}};
-    static const uint32_t most[] = {5, 5, 7, 5};
+    static const uint32_t most[] = {4, 4, 6, 4};
     for (size_t k = 0; k < sizeof plans / sizeof plans[0]; k++)
-        assert_in_range(told(&plans[k], 40 + k, check_runs(250)), 0, most[k]);
-    assert_int_equal(told(&plans[0], 3, check_runs(250)), 0);
+        assert_in_range(told(&plans[k], 40 + k, check_runs(160)), 0, most[k]);
+    assert_int_equal(told(&plans[0], 3, check_runs(160)), 0);
 }
 
 /* 350 deg for the third turn about z: found, named, left out. The scale factors are held as if it

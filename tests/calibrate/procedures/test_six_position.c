@@ -301,7 +301,7 @@ static void run_benches(const session_plan *plan, imk_procedure procedure, uint3
 static void test_coverage_placed(void **state)
 {
     (void)state;
-    run_benches(&twice, IMK_PROCEDURE_SIXPOSITION, check_runs(80), 0, 1.6);
+    run_benches(&twice, IMK_PROCEDURE_SIXPOSITION, check_runs(60), 0, 1.6);
 }
 
 /* Placements of 0.3 deg where 0.1 is stated: six faces show it with six degrees of freedom, two
@@ -313,8 +313,8 @@ static void test_coverage_placed_worse(void **state)
         .rounds = 1, .hold = 8, .placement = 5.1e-3, .stated = 1.0 / 3};
     static const session_plan more = {
         .rounds = 2, .hold = 8, .placement = 5.1e-3, .stated = 1.0 / 3};
-    run_benches(&once, IMK_PROCEDURE_SIXPOSITION, check_runs(80), 0, 1.8);
-    run_benches(&more, IMK_PROCEDURE_SIXPOSITION, check_runs(80), 0, 1.8);
+    run_benches(&once, IMK_PROCEDURE_SIXPOSITION, check_runs(60), 0, 1.8);
+    run_benches(&more, IMK_PROCEDURE_SIXPOSITION, check_runs(60), 0, 1.8);
 }
 
 /* What is said of the placements: chi-square of the stated sigma has the degrees that the faces
@@ -350,7 +350,7 @@ static void test_coverage_unequal_axes(void **state)
 {
     (void)state;
     static const session_plan plan = {.rounds = 3, .hold = 8, .unequal = 2.0, .push = 3e-3};
-    run_benches(&plan, IMK_PROCEDURE_SIXPOSITION, check_runs(80), 0, 1.6);
+    run_benches(&plan, IMK_PROCEDURE_SIXPOSITION, check_runs(60), 0, 1.6);
 }
 
 static void test_coverage_exact(void **state)
@@ -376,7 +376,7 @@ static void test_turned_where_it_lies(void **state)
     static const session_plan plan = {
         .rounds = 1, .hold = 5, .turn = 6, .placement = 1.7e-3, .unlabelled = true};
     static coverage_count count;
-    const uint32_t benches = check_runs(120);
+    const uint32_t benches = check_runs(80);
     session *b = session_new();
     memset(&count, 0, sizeof count);
     imk_error error;

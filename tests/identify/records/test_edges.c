@@ -52,11 +52,11 @@ static void test_abrupt(void **state)
 }
 
 /* White and slow noise, behind a filter too, of Laplace's or Gauss' distribution, in steps or not:
- * none of 160 records ends abruptly. */
+ * none of 80 records ends abruptly. */
 static void test_sound(void **state)
 {
     (void)state;
-    for (uint64_t seed = 0; seed < 160; seed++) {
+    for (uint64_t seed = 0; seed < 80; seed++) {
         if (check_skips(seed, 11))
             continue;
         const bool heavy = seed % 5 == 2;
@@ -92,7 +92,7 @@ static void test_sound_in_steps(void **state)
     check_sound_in_steps(3390, 0.24);
     check_sound_in_steps(4025, 0.49);
     check_sound_in_steps(4671, 0.49);
-    for (uint64_t seed = 0; seed < 60; seed++)
+    for (uint64_t seed = 0; seed < 30; seed++)
         if (!check_skips(seed, 7))
             check_sound_in_steps(seed, steps[seed % 6]);
 }

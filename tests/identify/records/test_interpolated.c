@@ -136,12 +136,12 @@ static void make_sound(uint32_t kind, uint32_t run, size_t count)
     }
 }
 
-/* The false alarm is 1e-4 a record; one of 200 would have a chance of 2 %, two of 2e-4, three of
- * 1.3e-6. */
+/* The false alarm is 1e-4 a record; one of 100 would have a chance of 1 %, two of 5e-5, three of
+ * 1.6e-7. */
 static void test_sound(void **state)
 {
     (void)state;
-    const uint32_t runs = check_runs(20);
+    const uint32_t runs = check_runs(10);
     int alarms = 0;
     for (uint32_t kind = 0; kind < 10; kind++)
         for (uint32_t run = 0; run < runs; run++) {

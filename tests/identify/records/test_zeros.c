@@ -90,7 +90,7 @@ static void test_too_many(void **state)
 }
 
 /* Rounded noise about any level near zero, with or without slow noise, has no zeros too many: none
- * of 240 records. */
+ * of 120 records. */
 static void test_sound(void **state)
 {
     (void)state;
@@ -101,7 +101,7 @@ static void test_sound(void **state)
         const double level = 0.13 * (double)(seed % 8);
         make(seed, level, 0, seed % 3 ? 0 : 0.01);
         memcpy(clean, rate, sizeof rate);
-        for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
+        for (size_t k = seed / 3 % 2; k < sizeof steps / sizeof *steps; k += 2) {
             memcpy(rate, clean, sizeof rate);
             round_to(steps[k]);
             if (seed % 3 == 2) /* and some that are no multiples */
@@ -135,7 +135,7 @@ static void test_sound_with_heavy_tails(void **state)
             continue;
         make_laplace(seed, 0.05 * (double)(seed % 4));
         memcpy(clean, rate, sizeof rate);
-        for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
+        for (size_t k = seed / 4 % 2; k < sizeof steps / sizeof *steps; k += 2) {
             memcpy(rate, clean, sizeof rate);
             round_to(steps[k]);
             assert_true(screen().zeros == 0);

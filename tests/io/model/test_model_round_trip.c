@@ -12,7 +12,7 @@
 
 #include <stdlib.h>
 
-enum { MODELS = 2000, EDITS = 150, MUTATIONS = 3000 };
+enum { MODELS = 1000, EDITS = 150, MUTATIONS = 3000 };
 
 static void assert_same(const imk_model *a, const imk_model *b, const char *text)
 {

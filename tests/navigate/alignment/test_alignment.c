@@ -431,8 +431,8 @@ static void test_covariance(void **state)
 {
     (void)state;
     const imk_model noise = navigation_model(false), all = navigation_model(true);
-    check_normalised(&noise, 45.0 * degree, check_runs(500), 1.0);
-    check_normalised(&all, -35.0 * degree, check_runs(500), 1.2);
+    check_normalised(&noise, 45.0 * degree, check_runs(300), 1.0);
+    check_normalised(&all, -35.0 * degree, check_runs(300), 1.2);
     check_normalised(&all, 85.0 * degree, check_runs(100), 1.2);
     /* Accelerometers that walk by more than gyros turn; coarse angles. */
     imk_model walking = navigation_model(false), coarse = walking;

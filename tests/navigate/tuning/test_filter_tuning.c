@@ -211,7 +211,7 @@ static void make_lively(imk_model *model)
  * beyond the limit in one of 1000 sets of runs. */
 static void check_runs_of(bool learned)
 {
-    const uint32_t runs = check_runs(400);
+    const uint32_t runs = check_runs(250);
     scene s;
     stand(&s, true, 50.0);
     shake(&s);
