@@ -326,10 +326,10 @@ static void test_consistency(void **state)
 {
     (void)state;
     imk_navigation_filter_settings s = tactical(1.0);
-    check_consistency("free vertical", &s, check_runs(120), 180.0);
+    check_consistency("free vertical", &s, check_runs(200), 180.0);
     s.hold_height = true;
     s.rotation_sigma = 1e-9;
-    check_consistency("held height, zero rotation", &s, check_runs(120), 180.0);
+    check_consistency("held height, zero rotation", &s, check_runs(200), 180.0);
 }
 
 /* The unit of tactical() as a model. */
@@ -356,7 +356,7 @@ static imk_model tactical_model(double gyros)
  * by much less than the two apart would. Free for two minutes, then corrected, then free again. */
 static void check_self_alignment(const char *name, imk_alignment_method method)
 {
-    enum { RUNS = 120 };
+    enum { RUNS = 200 };
     const uint32_t runs = check_runs(RUNS);
     static const int states[7] = {0, 1, 3, 4, 6, 7, 8};
     static memory m, am;
