@@ -201,11 +201,15 @@ static imk_status plain_run(plain_job *p, const imk_job *job)
     for (size_t k = 0; k < p->data.rows && stride != 1; k++)
         p->sums[k] = data[(ptrdiff_t)k * stride];
     data = stride != 1 ? p->sums : data;
-    p->bad = find_not_finite(data, p->data.rows);
+    /* What is not finite is so in the last sum, if that does not overwrite the samples. */
+    const bool before = p->phase || data == p->sums;
+    p->bad = before ? find_not_finite(data, p->data.rows) : p->data.rows;
+    if (p->bad == p->data.rows && !p->phase)
+        imk_allan_sums(p->n, data, p->sums, job->executor);
+    if (!before && !isfinite(p->sums[p->n]))
+        p->bad = find_not_finite(data, p->data.rows);
     if (p->bad < p->data.rows)
         return IMK_ERROR_NOT_FINITE;
-    if (!p->phase)
-        imk_allan_sums(p->n, data, p->sums, job->executor);
     double *deviations = p->results.data[0], *counts = p->results.data[1];
     const imk_status status = compute_factors(p, job, p->sums ? p->sums : data);
     for (size_t k = 0; k < p->factors.rows && status == IMK_OK; k++) {
