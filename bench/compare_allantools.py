@@ -9,10 +9,11 @@ MDEV, OHDEV and HDEV at octaves of 1e6 frequencies; Theo1 and MTOT of 1e4 at two
 are short for them: the time of the original grows with them, to minutes, and that of imukit hardly
 does. Both sides run in turn, and times are the least of several [s].
 
-What limits imukit at 1e6 (one thread of a Zen 4): HDEV spends half of its 3 ms on integrating the
-frequencies (1.5 ms; 10 additions a sample, which carry the rounding along); OADEV reads its 3 points
-a term in 3.4 ms and OHDEV its 4 in 4 ms, from caches; MDEV takes 13 ms, since running sums by vectors
-cost it three sweeps more. Threads take from what is not memory."""
+The better of imukit's times counts: a thread that waits for a processor that others use costs some
+ms, as much as HDEV takes, which therefore has none. What limits one thread
+(Zen 4): HDEV reads every m-th phase only, and spends half of its 3 ms on integrating the frequencies (10
+additions a sample, which carry the rounding along); the original needs 27 to 33 ms, so 10 is what can be had. OADEV reads 3 points a term in 3.4 ms and OHDEV 4 in 4.0 ms, from caches. MDEV takes
+13 ms for the same 4 points, since running sums by vectors are three sweeps more."""
 import importlib
 import os
 import sys
