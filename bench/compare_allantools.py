@@ -10,10 +10,11 @@ are short for them: the time of the original grows with them, to minutes, and th
 does. Both sides run in turn, and times are the least of several [s].
 
 The better of imukit's times counts: a thread that waits for a processor that others use costs some
-ms, as much as HDEV takes, which therefore has none. What limits one thread
-(Zen 4): HDEV reads every m-th phase only, and spends half of its 3 ms on integrating the frequencies (10
-additions a sample, which carry the rounding along); the original needs 27 to 33 ms, so 10 is what can be had. OADEV reads 3 points a term in 3.4 ms and OHDEV 4 in 4.0 ms, from caches. MDEV takes
-13 ms for the same 4 points, since running sums by vectors are three sweeps more."""
+ms, as much as HDEV takes, which therefore has none. What limits one thread (Zen 4): HDEV reads every
+m-th phase only, and spends half of its 2.4 to 3 ms on integrating the frequencies (10 additions a
+sample, which carry the rounding along); the original needs 27 to 33 ms, so little more than 10 can be
+had. OADEV reads 3 points a term in 3.4 ms and OHDEV 4 in 4.0 ms, from caches. MDEV takes 13 ms for the
+same 4 points, since running sums by vectors are three sweeps more."""
 import importlib
 import os
 import sys
