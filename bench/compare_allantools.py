@@ -9,8 +9,8 @@ MDEV, OHDEV and HDEV at octaves of 1e6 frequencies; Theo1 and MTOT of 1e4 at two
 are short for them: the time of the original grows with them, to minutes, and that of imukit hardly
 does. Both sides run in turn, and times are the least of several [s].
 
-The better of imukit's times counts: a thread that waits for a processor that others use costs some
-ms, as much as HDEV takes, which therefore has none. What limits one thread (Zen 4): HDEV reads every
+The better of imukit's times counts, since other work on the machine delays threads.
+What limits one thread (Zen 4): HDEV reads every
 m-th phase only, and spends half of its 2.4 to 3 ms on integrating the frequencies (10 additions a
 sample, which carry the rounding along); the original needs 27 to 33 ms, so little more than 10 can be
 had. OADEV reads 3 points a term in 3.4 ms and OHDEV 4 in 4.0 ms, from caches. MDEV takes 13 ms for the
@@ -30,10 +30,10 @@ ALL = ("adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev", "mtotdev", "t
 
 
 def least(runs, functions):
-    """Shortest times of functions that run in turn, and what they gave."""
+    """Shortest times of functions, three runs each in turn: the first finds cold caches."""
     best, results = [float("inf")] * len(functions), [None] * len(functions)
     for _ in range(runs):
-        for k, function in enumerate(functions):
+        for k, function in ((k, f) for k, f in enumerate(functions) for _ in range(min(runs, 3))):
             begin = time.perf_counter()
             results[k] = function()
             best[k] = min(best[k], time.perf_counter() - begin)
@@ -61,7 +61,7 @@ def compare_speed(theirs):
         def run(side, **options):
             return getattr(side, name)(data, data_type="freq", taus=taus, **options)
 
-        (slow, quick, alone), (other, one, _) = least(15 if long else 1, (
+        (slow, quick, alone), (other, one, _) = least(5 if long else 1, (
             lambda: run(theirs), lambda: run(mine), lambda: run(mine, threads=1)))
         apart = difference(one, other)
         good &= slow >= wanted * min(quick, alone) and apart <= 1e-10

@@ -229,13 +229,6 @@ static void plain_release(plain_job *p)
     free(p->workspace);
 }
 
-/* ADEV and HDEV take 3 ns a sample, less than a thread that waits for a busy processor. */
-static int threads_for(const plain_job *p, int threads)
-{
-    const bool quick = p->statistic == IMK_ALLAN_PLAIN || p->statistic == IMK_ALLAN_HADAMARD_PLAIN;
-    return threads == 0 && quick && p->n < 4000000 ? 1 : threads;
-}
-
 /* deviation(data, statistic, phase, scale, factors, (deviations, counts), threads) */
 static PyObject *deviation(PyObject *module, PyObject *args)
 {
@@ -251,7 +244,7 @@ static PyObject *deviation(PyObject *module, PyObject *args)
     p.statistic = statistic_of(name);
     imk_status status = IMK_OK;
     if (p.statistic != IMK_ALLAN_STATISTICS && plain_take(&p, data, factors, results) &&
-        work_begin(&w, threads_for(&p, threads), Py_None)) {
+        work_begin(&w, threads, Py_None)) {
         status = plain_run(&p, &w.job);
         if (work_end(&w) && status != IMK_OK) {
             imk_error error;

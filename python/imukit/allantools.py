@@ -15,7 +15,7 @@ data_type   'phase' or 'freq'
 taus        'octave' (None), 'decade' (1, 2, 4, 10, 20, 40 …), 'log10' (10 per decade), 'all', or
             averaging times [s]. Each is rounded to a multiple m of 1/rate; what is 0 or as long as
             the data is left out
-threads     0: one per processor where that saves time (allantools has no such argument)
+threads     0: one per processor (allantools has no such argument)
 
 and gives back vectors of equal length: averaging times m/rate [s], deviations, errors (deviation
 over the root of the number of averages), and numbers of averages. Averaging times with a single
