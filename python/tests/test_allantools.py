@@ -3,6 +3,8 @@
 import array
 import math
 import random
+import signal
+import time
 import unittest
 
 import imukit
@@ -255,6 +257,28 @@ class Refused(unittest.TestCase):
                         getattr(allantools, name)(*arguments)
         with self.assertRaisesRegex(ValueError, "threads"):
             allantools.oadev(x, threads=-1)
+
+
+class Stopped(Exception):
+    pass
+
+
+class Interrupted(unittest.TestCase):
+    def test_long_call(self):
+        """Half a minute of work ends soon after a signal."""
+        def stop(*said):
+            raise Stopped
+
+        x = array.array("d", (k * k % 101 for k in range(20000)))
+        before = signal.signal(signal.SIGALRM, stop)
+        began = time.perf_counter()
+        try:
+            with self.assertRaises(Stopped):
+                signal.setitimer(signal.ITIMER_REAL, 0.05)
+                allantools.theo1(x, taus="all")
+        finally:
+            signal.signal(signal.SIGALRM, before)
+        self.assertLess(time.perf_counter() - began, 5)
 
 
 if __name__ == "__main__":

@@ -58,19 +58,70 @@ static void segment_total(void *context, size_t segment)
     w->error[segment] = error;
 }
 
-/* The error of every addition is carried along: a sum is right to its last digit however long the
- * record. Reading stays ahead of writing, so that sums and record may share memory. */
-static void segment_sums(void *context, size_t segment)
+/* Segments run side by side, so that vectors take a sample of each: an addition waits for the one
+ * before it in its segment. The error of every addition is carried along: a sum is right to its
+ * last digit however long the record. A tile of samples is read before its sums are written, so
+ * that sums and record may share memory. */
+enum { TOGETHER = 8, TILE = 32 };
+
+typedef struct running_sum {
+    size_t place;
+    double sum, error, value; /* up to `place`, and the sample there */
+} running_sum;
+
+IMKI_INLINED void step(const sums_work *w, running_sum *r)
+{
+    r->sum = add_exactly(r->sum, (r->value - w->shift) - w->mean, &r->error);
+    r->place++;
+    r->value = r->place < w->n ? w->rate[r->place] : 0;
+    w->sums[r->place] = r->sum + r->error;
+}
+
+/* Returns the first segment's last sum. */
+IMKI_INLINED double tile_sums(const sums_work *w, running_sum *running)
+{
+    double tile[TILE][TOGETHER], sum[TOGETHER], error[TOGETHER];
+    for (size_t l = 0; l < TOGETHER; l++) {
+        running_sum *r = &running[l];
+        tile[0][l] = r->value;
+        for (size_t i = 1; i < TILE; i++)
+            tile[i][l] = w->rate[r->place + i];
+        r->place += TILE;
+        r->value = r->place < w->n ? w->rate[r->place] : 0;
+        sum[l] = r->sum;
+        error[l] = r->error;
+    }
+    for (size_t i = 0; i < TILE; i++)
+        for (size_t l = 0; l < TOGETHER; l++) {
+            sum[l] = add_exactly(sum[l], (tile[i][l] - w->shift) - w->mean, &error[l]);
+            tile[i][l] = sum[l] + error[l];
+        }
+    for (size_t l = 0; l < TOGETHER; l++) {
+        running_sum *r = &running[l];
+        for (size_t i = 0; i < TILE; i++)
+            w->sums[r->place - TILE + 1 + i] = tile[i][l];
+        r->sum = sum[l];
+        r->error = error[l];
+    }
+    return sum[0];
+}
+
+IMKI_ALLAN_VERSIONS(tile_sums, (const sums_work *w, running_sum *running), w, running)
+
+static void segment_sums(void *context, size_t item)
 {
     const sums_work *w = context;
-    const size_t begin = segment_begin(w, segment), end = segment_begin(w, segment + 1);
-    double sum = w->total[segment], error = w->error[segment], value = w->first[segment];
-    for (size_t i = begin; i < end; i++) {
-        sum = add_exactly(sum, (value - w->shift) - w->mean, &error);
-        if (i + 1 < end)
-            value = w->rate[i + 1];
-        w->sums[i + 1] = sum + error;
-    }
+    const size_t first = item * TOGETHER, shortest = w->n / SEGMENTS;
+    const imk_kernel kernel = imk_random_seeded(0).kernel;
+    running_sum running[TOGETHER];
+    for (size_t l = 0; l < TOGETHER; l++)
+        running[l] = (running_sum){segment_begin(w, first + l), w->total[first + l],
+                                   w->error[first + l], w->first[first + l]};
+    for (size_t done = 0; done + TILE <= shortest; done += TILE)
+        (void)IMKI_ALLAN_CALL(kernel, tile_sums, w, running);
+    for (size_t l = 0; l < TOGETHER; l++)
+        while (running[l].place < segment_begin(w, first + l + 1))
+            step(w, &running[l]);
 }
 
 void imk_allan_sums(size_t n, const double *rate, double *sums, const imk_executor *executor)
@@ -95,5 +146,5 @@ void imk_allan_sums(size_t n, const double *rate, double *sums, const imk_execut
         error += rest;
     }
     sums[0] = 0;
-    imk_execute(executor, SEGMENTS, segment_sums, &w);
+    imk_execute(executor, SEGMENTS / TOGETHER, segment_sums, &w);
 }

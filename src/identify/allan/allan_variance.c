@@ -59,13 +59,16 @@ IMKI_INLINED double differences(bool third, const double *s, size_t m, size_t co
 IMKI_ALLAN_VERSIONS(differences, (bool third, const double *s, size_t m, size_t count), third, s, m,
                     count)
 
-static double plain_sum(bool third, const double *s, size_t m, size_t count)
+/* The plain variances are the overlapping ones at m = 1 of every m-th sum. */
+static double plain_sum(bool third, imk_kernel kernel, const double *s, size_t m, size_t count)
 {
-    double total = 0;
-    for (const double *a = s; count > 0; a += m, count--) {
-        const double d =
-            third ? (a[3 * m] - a[0]) - 3 * (a[2 * m] - a[m]) : (a[2 * m] - a[m]) - (a[m] - a[0]);
-        total += d * d;
+    double total = 0, every[BLOCK + 3];
+    const size_t beyond = third ? 3 : 2;
+    for (size_t first = 0; first < count; first += BLOCK) {
+        const size_t size = count - first < BLOCK ? count - first : BLOCK;
+        for (size_t i = 0; i < size + beyond && m > 1; i++)
+            every[i] = s[(first + i) * m];
+        total += IMKI_ALLAN_CALL(kernel, differences, third, m > 1 ? every : s + first, 1, size);
     }
     return total;
 }
@@ -171,7 +174,7 @@ static void difference_group(void *context, size_t item)
     const bool third = w->statistic == IMK_ALLAN_HADAMARD_PLAIN;
     if (third || w->statistic == IMK_ALLAN_PLAIN)
         for (size_t i = 0; i < size; i++)
-            cursor[i].total = plain_sum(third, w->sums, cursor[i].m, cursor[i].count);
+            cursor[i].total = plain_sum(third, w->kernel, w->sums, cursor[i].m, cursor[i].count);
     else
         for (size_t j = 0; j < longest; j += BLOCK)
             for (size_t i = 0; i < size; i++)
