@@ -228,7 +228,7 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
     if "device" in log:
         log = {**log, "accel_range": accel_range, "gyro_range": gyro_range}
     if pose_means and rate is not None and all(map(_core.procedures.get, procedures)):
-        raise ValueError("rate is of logs; a table of pose means has no times: leave it out")
+        raise ValueError("rate: a table of pose means has no times; leave it out")
     names = tuple(os.fspath(run) if is_path(run) else f"run {k + 1}" for k, run in enumerate(runs))
     if repeats and any(_is_model(run) for run in runs):
         opened = tuple(as_model(run)._core for run in runs)
