@@ -167,7 +167,7 @@ static imk_status plain_run(plain_job *p, const imk_executor *executor)
     p->workspace_size = imk_allan_workspace_size(p->statistic, p->n, p->factors.rows, p->factor,
                                                  executor->threads > 0 ? executor->threads : 1);
     p->workspace = malloc(p->workspace_size + 1); /* without the lock */
-    if (!p->workspace)
+    if (!p->workspace || !p->count)
         return IMK_ERROR_MEMORY;
     double *deviations = p->results.data[0], *counts = p->results.data[1];
     const imk_status status =

@@ -4,8 +4,8 @@
 
 #include "imukit/utf8.h"
 
-#include <stdlib.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const setting calibrate_rows[] = {

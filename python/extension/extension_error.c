@@ -145,8 +145,8 @@ static PyObject *raise(const imk_error *error, const char *message, PyObject *fi
     PyObject *raised = text ? PyObject_CallFunctionObjArgs(class_of(error), text, NULL) : NULL;
     Py_XDECREF(text);
     if (raised && set_attribute(raised, "code", told_text(imk_status_name(status))) &&
-        set_attribute(raised, "field", told_text(error->field)) &&
-        set_file(raised, error) && set_attribute(raised, "index", PyLong_FromLong(error->index)) &&
+        set_attribute(raised, "field", told_text(error->field)) && set_file(raised, error) &&
+        set_attribute(raised, "index", PyLong_FromLong(error->index)) &&
         set_attribute(raised, "value", PyFloat_FromDouble(error->value)) &&
         set_attribute(raised, "limit", PyFloat_FromDouble(error->limit)) &&
         set_attribute(raised, "line", PyLong_FromSize_t(error->line)) &&

@@ -20,7 +20,7 @@ static bool angle_check(double value, const char *name, const char *unit)
     static const struct {
         const char *end;
         double most; /* [rad] */
-    } angles[] = {{"latitude", 1.5707963267948968}, {"dip", 1.5707963267948968},
+    } angles[] = {{"latitude", 1.5707963267948968},  {"dip", 1.5707963267948968},
                   {"longitude", 6.2831853071795872}, {"roll", 6.2831853071795872},
                   {"pitch", 6.2831853071795872},     {"yaw", 6.2831853071795872},
                   {"heading", 6.2831853071795872}};
@@ -32,10 +32,11 @@ static bool angle_check(double value, const char *name, const char *unit)
             fabs(value) <= angles[k].most)
             continue;
         char text[200];
-        snprintf(text, sizeof text,
-                 "%.40s=%g: a number is taken as radians, and expected within %.4g; write degrees as "
-                 "a text: '%g deg'",
-                 name, value, angles[k].most, value);
+        snprintf(
+            text, sizeof text,
+            "%.40s=%g: a number is taken as radians, and expected within %.4g; write degrees as "
+            "a text: '%g deg'",
+            name, value, angles[k].most, value);
         imk_error_set(&error, IMK_ERROR_RANGE, name, "", "");
         error.value = value;
         error.limit = angles[k].most;

@@ -108,7 +108,8 @@ PyMethodDef unit_functions[] = {
     {"normal_gravity", (PyCFunction)(void (*)(void))normal_gravity, METH_FASTCALL,
      "normal_gravity(latitude, height, /)\n--\n\n"
      "Normal gravity [m/s^2] at a geodetic latitude [rad] and a height [m] above the ellipsoid "
-     "(WGS 84); both may be texts with a unit. Raises imukit.Error: a latitude beyond the poles.\n\n"
+     "(WGS 84); both may be texts with a unit. Raises imukit.Error: a latitude beyond the "
+     "poles.\n\n"
      ">>> import imukit\n"
      ">>> round(imukit.normal_gravity('45 deg', 0.0), 6)\n"
      "9.806198\n"},

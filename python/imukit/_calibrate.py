@@ -173,7 +173,8 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
     estimate     terms to estimate: "bias,scale_factor,accel.misalignment"; None: those that the
                  procedures determine
     with_, without  terms to estimate in addition, or not to: 'nonlinearity', 'cross_products',
-                 'g_sensitivity', 'g2_sensitivity', 'gyro'
+                 'g_sensitivity', 'g2_sensitivity', 'gyro' (multiposition: the gyros' scale factors
+                 and misalignments, by the turns; bias and g-sensitivity come from the rests)
     accel_sensitivity, gyro_sensitivity  nominal, for records in counts [count/(m/s^2)],
                  [count/(rad/s)]; one number, or one for each axis
     accel_zero, gyro_zero  counts at zero input

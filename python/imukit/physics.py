@@ -21,7 +21,7 @@ import math
 import os
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from . import _arrays, _core
 from ._log import Log, made_log
@@ -628,5 +628,8 @@ __all__ = ["About", "Derived", "Group", "Instrument", "Parameter", "PhysicsResul
 __all__ += [kind.__name__ for kind in _kinds.values()]
 
 
-def __getattr__(name: str) -> Any:  # of the classes that are made, for type checkers
-    raise AttributeError(f"imukit.physics has no {name!r}; there are: {', '.join(__all__)}")
+if TYPE_CHECKING:  # the classes that are made, as a stub says
+    from ._instrument_types import *
+else:
+    def __getattr__(name: str) -> Any:
+        raise AttributeError(f"imukit.physics has no {name!r}; there are: {', '.join(__all__)}")

@@ -78,7 +78,9 @@ class Others(unittest.TestCase):
             for made in copies(motion):
                 self.assertEqual(repr(made), repr(motion))
                 self.assertEqual(made.truth(10, length), motion.truth(10, length))
-        columns = imukit.Motion(imukit.Motion.parse(script).truth(10))
+        columns = imukit.Motion({name: [0.01 * k for k in range(9)] for name in (
+            "time [s]", "roll [rad]", "pitch [rad]", "yaw [rad]", "latitude [rad]",
+            "longitude [rad]", "height [m]")})
         self.assertEqual(copy.copy(columns).duration, columns.duration)
         self.assertEqual(copy.deepcopy(columns).kind, columns.kind)
         with self.assertRaisesRegex(TypeError, "pickle what it was made of"):
