@@ -283,7 +283,7 @@ static int refused(const calibrate_options *o, const imk_error *error)
     for (char *c = name; *c; c++)
         *c = *c == '_' ? '-' : *c;
     if (of_means)
-        return command_misused("--%s %s: leave it out", name, error->found);
+        return command_misused("--%s: %s; leave it out", name, error->found);
     return command_misused("--%s is not used by --procedure %s, %s", name, o->procedure,
                            error->expected);
 }
