@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""clang-tidy (.clang-tidy) on the libraries, the command, the examples and the fuzz entry points, with
-clang's own warnings.
+"""clang-tidy (.clang-tidy) on the libraries, the command, the extension of Python, the examples and the
+fuzz entry points, with clang's own warnings.
 
     tools/check_tidy.py          the analyzer gives up on a function after 3,000 steps
     tools/check_tidy.py --deep   after 225,000, its own limit: five minutes (make tidy-deep)
@@ -21,6 +21,7 @@ import re
 import shutil
 import subprocess
 import sys
+import sysconfig
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MODELS = pathlib.Path("tools/analyzer_models")
@@ -51,6 +52,9 @@ def own_flags(name, text):
         place = shutil.which("mkoctfile") and subprocess.run(
             ["mkoctfile", "-p", "OCTINCLUDEDIR"], capture_output=True, text=True).stdout.strip()
         return ["-isystem", place] if place else None
+    if "#include <Python.h>" in text:
+        place = sysconfig.get_path("include")
+        return ["-isystem", place] if (pathlib.Path(place) / "Python.h").exists() else None
     if "#include <hdf5.h>" in text:
         return package("hdf5-serial", "hdf5")
     return package("mpi-c") if name.endswith("_mpi.c") else []
@@ -125,7 +129,7 @@ def main():
     os.chdir(ROOT)
     PASSED.mkdir(parents=True, exist_ok=True)
     # The largest first, so that nobody waits for them at the end.
-    files = sorted((path for folder in ["src", "cli", "matlab", "examples", "fuzz"]
+    files = sorted((path for folder in ["src", "cli", "matlab", "python", "examples", "fuzz"]
                     for path in pathlib.Path(folder).rglob("*.c")),
                    key=lambda path: -path.stat().st_size)
     batches = [(flags, group[i:i + FILES_AT_ONCE])

@@ -222,8 +222,7 @@ static int check_means(const session *b)
                                "multiposition, sixposition and tumble take tables of pose means",
                                o->procedure);
     if (!logs && o->log.file.rate > 0)
-        return command_misused("--rate is of logs; a table of pose means has no times: leave it "
-                               "out");
+        return command_misused("--rate: a table of pose means has no times; leave it out");
     if (o->log.file.axes)
         return command_misused("--axes does not go with --pose-means: name the columns in the "
                                "header by forward-right-down axes");
@@ -284,7 +283,7 @@ static int refused(const calibrate_options *o, const imk_error *error)
     for (char *c = name; *c; c++)
         *c = *c == '_' ? '-' : *c;
     if (of_means)
-        return command_misused("--%s %s: leave it out", name, error->found);
+        return command_misused("--%s: %s; leave it out", name, error->found);
     return command_misused("--%s is not used by --procedure %s, %s", name, o->procedure,
                            error->expected);
 }

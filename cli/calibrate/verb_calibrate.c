@@ -64,9 +64,10 @@ static const option test_options[] = {
      .help = "terms to estimate, such as \"bias,scale_factor,accel.misalignment\"; "
              "default: the terms that the procedure determines"},
     {"with", OPTION_TEXT, AT(with), .value = "TERMS",
-     .help = "estimate these terms in addition: nonlinearity, cross_products, g_sensitivity, "
-             "g2_sensitivity, "
-             "gyro"},
+     .help =
+         "estimate these terms in addition: nonlinearity, cross_products, g_sensitivity, "
+         "g2_sensitivity, gyro (multiposition: scale factors and misalignments of the gyros, by "
+         "the turns)"},
     {"without", OPTION_TEXT, AT(without), .value = "TERMS", .help = "do not estimate these terms"},
     {"accel-sensitivity", OPTION_TEXT, AT(sensitivity[1]), .value = "NUMBER",
      .help = "nominal sensitivity of the accelerometers, for logs in counts, such as \"415 "

@@ -81,7 +81,7 @@ typedef enum imk_status {
 typedef struct imk_error {
     imk_status status;
     int index;          /**< axis, row or element; -1 when it does not apply */
-    double value;       /**< the offending number */
+    double value;       /**< the offending number; of a file that failed errno, or 0 */
     double limit;       /**< the limit that it exceeds */
     size_t line;        /**< in a text, from 1; 0 when it does not apply */
     size_t column;      /**< in that line, from 1 */

@@ -23,6 +23,8 @@ static struct PyModuleDef definition = {
     .m_size = -1,
 };
 
+PyMODINIT_FUNC PyInit__core(void);
+
 PyMODINIT_FUNC PyInit__core(void)
 {
     PyObject *module = PyModule_Create(&definition);

@@ -123,11 +123,11 @@ PyObject *record_of_reader(void *reader, const char *name);
 bool add_record(PyObject *module);
 
 /** A result as an object, which takes it over; NULL with an exception. */
-PyObject *make_result(imk_result *result);
+PyObject *make_result(imk_result *made);
 /** An empty result that names what is run; NULL with an exception. */
 imk_result *begin_result(const char *command);
 /** The result and the findings as a tuple. Takes over the result. */
-PyObject *result_with(imk_result *result, const imk_findings *findings, const char *record,
+PyObject *result_with(imk_result *made, const imk_findings *findings, const char *record,
                       const char *model);
 /** A tuple with one value more. Both are taken over; NULL for one of them gives NULL. */
 PyObject *extended(PyObject *tuple, PyObject *more);

@@ -177,7 +177,8 @@ static bool workspace_take(plain_job *p, size_t count, const size_t *factor, siz
 
 static imk_status compute_factors(plain_job *p, const imk_job *job, const double *sums)
 {
-    const size_t all = p->factors.rows, threads = job->executor->threads;
+    const size_t all = p->factors.rows;
+    const size_t threads = job->executor->threads > 0 ? job->executor->threads : 1;
     const size_t portion = factors_at_once(p, threads);
     imk_status status = IMK_OK;
     for (size_t done = 0; done < all && status == IMK_OK; done += portion) {
@@ -210,6 +211,8 @@ static imk_status plain_run(plain_job *p, const imk_job *job)
         p->bad = find_not_finite(data, p->data.rows);
     if (p->bad < p->data.rows)
         return IMK_ERROR_NOT_FINITE;
+    if (!p->count)
+        return IMK_ERROR_MEMORY;
     double *deviations = p->results.data[0], *counts = p->results.data[1];
     const imk_status status = compute_factors(p, job, p->sums ? p->sums : data);
     for (size_t k = 0; k < p->factors.rows && status == IMK_OK; k++) {

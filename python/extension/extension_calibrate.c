@@ -4,6 +4,7 @@
 
 #include "imukit/utf8.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -131,10 +132,12 @@ static imk_procedure procedure_of(PyObject *object)
 {
     const char *name = utf8_of(object, NULL);
     char all[200] = "";
+    size_t length = 0;
     for (int p = 0; name && p < IMK_PROCEDURES; p++) {
         if (strcmp(name, imk_procedure_name((imk_procedure)p)) == 0)
             return (imk_procedure)p;
-        strcat(strcat(all, imk_procedure_name((imk_procedure)p)), ", ");
+        length += (size_t)snprintf(all + length, sizeof all - length, "%s, ",
+                                   imk_procedure_name((imk_procedure)p));
     }
     if (name)
         PyErr_Format(PyExc_ValueError, "procedure='%s': expected one of %srepeatability", name,

@@ -306,8 +306,8 @@ static PyObject *set_name(PyObject *self, PyObject *args)
     if (strlen(name) >= sizeof f->name || strlen(description) >= sizeof f->description)
         return PyErr_Format(PyExc_ValueError, "name: expected at most %zu bytes, description: %zu",
                             sizeof f->name - 1, sizeof f->description - 1);
-    strcpy(f->name, name);
-    strcpy(f->description, description);
+    memcpy(f->name, name, strlen(name) + 1);
+    memcpy(f->description, description, strlen(description) + 1);
     Py_RETURN_NONE;
 }
 

@@ -5,10 +5,34 @@
 #include "imukit/io.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
 static PyObject *error_class, *file_error_class;
+
+/* Classes of FileError that are also the class of Python that errno stands for. */
+static struct file_kind {
+    int number; /* errno */
+    const char *name;
+    PyObject **base, *made;
+} file_kinds[] = {{ENOENT, "imukit._core.MissingFile", &PyExc_FileNotFoundError, NULL},
+                  {EACCES, "imukit._core.ForbiddenFile", &PyExc_PermissionError, NULL},
+                  {EISDIR, "imukit._core.FolderForFile", &PyExc_IsADirectoryError, NULL}};
+enum { FILE_KINDS = sizeof file_kinds / sizeof file_kinds[0] };
+
+/* A class with two bases, which shows its message as the first does. */
+static PyObject *class_of_two(const char *name, const char *text, PyObject *first, PyObject *second)
+{
+    PyObject *bases = PyTuple_Pack(2, first, second), *members = PyDict_New(), *made = NULL;
+    PyObject *shown = PyObject_GetAttrString(PyExc_BaseException, "__str__");
+    if (bases && members && shown && PyDict_SetItemString(members, "__str__", shown) == 0)
+        made = PyErr_NewExceptionWithDoc(name, text, bases, members);
+    Py_XDECREF(shown);
+    Py_XDECREF(members);
+    Py_XDECREF(bases);
+    return made;
+}
 
 bool add_errors(PyObject *module)
 {
@@ -21,11 +45,21 @@ bool add_errors(PyObject *module)
         "-1: none), value and limit (SI), line and column (in a text, from 1; 0: none). A job that "
         "fails because of the data has the attribute findings, too.",
         PyExc_ValueError, NULL);
-    PyObject *bases = error_class ? PyTuple_Pack(2, error_class, PyExc_OSError) : NULL;
-    if (bases)
-        file_error_class = PyErr_NewExceptionWithDoc(
-            "imukit.FileError", "A file that cannot be opened, read or written.", bases, NULL);
-    Py_XDECREF(bases);
+    if (error_class)
+        file_error_class = class_of_two(
+            "imukit.FileError",
+            "A file that cannot be opened, read or written.\n\n"
+            "It is also an OSError, with errno, strerror and filename where the system refused; "
+            "one of a missing file is also a FileNotFoundError, of a forbidden one a "
+            "PermissionError, of a folder an IsADirectoryError.",
+            error_class, PyExc_OSError);
+    for (size_t k = 0; k < FILE_KINDS && file_error_class; k++) {
+        struct file_kind *kind = &file_kinds[k];
+        kind->made = class_of_two(kind->name, "A FileError.", file_error_class, *kind->base);
+        if (!kind->made ||
+            PyModule_AddObjectRef(module, strrchr(kind->name, '.') + 1, kind->made) != 0)
+            return false;
+    }
     return file_error_class && PyModule_AddObjectRef(module, "Error", error_class) == 0 &&
            PyModule_AddObjectRef(module, "FileError", file_error_class) == 0;
 }
@@ -51,7 +85,7 @@ static const char *put_argument(const char *option, char **to)
     snprintf(value, sizeof value, "%.*s", (int)length, at + 1);
     const bool number = strspn(value, "0123456789") == strlen(value);
     const bool word = strpbrk(value, "0123456789_=/") != NULL;
-    if (at[1] == '"') {
+    if (at[1] == '"' || (at[1] == '\\' && at[2] == '"')) { /* in JSON it is escaped */
         *(*to)++ = '=';
         return at + 1;
     }
@@ -81,21 +115,37 @@ PyObject *told_text(const char *text)
     return object;
 }
 
+static PyObject *class_of(const imk_error *error)
+{
+    if (error->status != IMK_ERROR_OPEN && error->status != IMK_ERROR_READ &&
+        error->status != IMK_ERROR_WRITE)
+        return error_class;
+    for (size_t k = 0; k < FILE_KINDS; k++)
+        if (error->value == file_kinds[k].number)
+            return file_kinds[k].made;
+    return file_error_class;
+}
+
+/* What the system refused, as of an OSError. */
+static bool set_file(PyObject *object, const imk_error *error)
+{
+    return class_of(error) == error_class || error->value == 0 ||
+           (set_attribute(object, "errno", PyLong_FromDouble(error->value)) &&
+            set_attribute(object, "strerror", told_text(error->found)) &&
+            set_attribute(object, "filename", told_text(error->field)));
+}
+
 /* @param findings  a list; NULL: none */
 static PyObject *raise(const imk_error *error, const char *message, PyObject *findings)
 {
     const imk_status status = error->status;
     if (status == IMK_ERROR_MEMORY)
         return PyErr_NoMemory();
-    const bool file =
-        status == IMK_ERROR_OPEN || status == IMK_ERROR_READ || status == IMK_ERROR_WRITE;
     PyObject *text = told_text(message);
-    PyObject *raised =
-        text ? PyObject_CallFunctionObjArgs(file ? file_error_class : error_class, text, NULL)
-             : NULL;
+    PyObject *raised = text ? PyObject_CallFunctionObjArgs(class_of(error), text, NULL) : NULL;
     Py_XDECREF(text);
     if (raised && set_attribute(raised, "code", told_text(imk_status_name(status))) &&
-        set_attribute(raised, "field", told_text(error->field)) &&
+        set_attribute(raised, "field", told_text(error->field)) && set_file(raised, error) &&
         set_attribute(raised, "index", PyLong_FromLong(error->index)) &&
         set_attribute(raised, "value", PyFloat_FromDouble(error->value)) &&
         set_attribute(raised, "limit", PyFloat_FromDouble(error->limit)) &&

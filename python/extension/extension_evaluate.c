@@ -223,7 +223,9 @@ static PyObject *evaluation_show(evaluation *v)
 
 static PyObject *finish(evaluation *v, PyObject *quantities)
 {
-    const char *name = v->count == 1 ? v->name[0] : v->count == 0 ? v->rest->name : "the records";
+    const char *name = v->count == 1              ? v->name[0]
+                       : v->count == 0 && v->rest ? v->rest->name
+                                                  : "the records";
     PyObject *list = list_findings(&v->log->findings, name, "the model");
     const Py_ssize_t end = PyList_Size(v->findings);
     const bool good = list && PyList_SetSlice(v->findings, end, end, list) == 0;

@@ -68,27 +68,33 @@ static PyObject *text_of(imk_status status, char *text, size_t size)
     return object;
 }
 
+/* What made a text of the result, which ends in a zero: arguments stand for options. */
+static PyObject *told(imk_status status, char *text)
+{
+    if (status != IMK_OK)
+        return PyErr_NoMemory();
+    PyObject *object = told_text(text);
+    free(text);
+    return object;
+}
+
 static PyObject *json(PyObject *self, PyObject *none)
 {
     char *text = NULL;
     size_t size = 0;
     (void)none;
     const imk_status status = imk_result_to_json(((result *)self)->result, &text, &size);
-    return text_of(status, text, size);
+    return told(status, text);
 }
 
 static PyObject *plain(PyObject *self, PyObject *none)
 {
-    char *text = NULL; /* ends in a zero */
+    char *text = NULL;
     size_t size = 0;
     (void)none;
     const imk_status status =
         imk_result_to_text(((result *)self)->result, NULL, NULL, &text, &size);
-    if (status != IMK_OK)
-        return PyErr_NoMemory();
-    PyObject *object = told_text(text);
-    free(text);
-    return object;
+    return told(status, text);
 }
 
 static PyObject *page(PyObject *self, PyObject *none)

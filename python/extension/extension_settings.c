@@ -3,6 +3,7 @@
 #include "extension.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 const char *utf8_of(PyObject *object, Py_ssize_t *size)
@@ -11,6 +12,38 @@ const char *utf8_of(PyObject *object, Py_ssize_t *size)
         return PyUnicode_AsUTF8AndSize(object, size);
     PyErr_Format(PyExc_TypeError, "expected a text, not %R", (PyObject *)Py_TYPE(object));
     return NULL;
+}
+
+/* Numbers that were meant in degrees are refused where an angle has an end. */
+static bool angle_check(double value, const char *name, const char *unit)
+{
+    static const struct {
+        const char *end;
+        double most; /* [rad] */
+    } angles[] = {{"latitude", 1.5707963267948968},  {"dip", 1.5707963267948968},
+                  {"longitude", 6.2831853071795872}, {"roll", 6.2831853071795872},
+                  {"pitch", 6.2831853071795872},     {"yaw", 6.2831853071795872},
+                  {"heading", 6.2831853071795872}};
+    const size_t length = strlen(name);
+    imk_error error;
+    for (size_t k = 0; k < sizeof angles / sizeof angles[0] && strcmp(unit, "rad") == 0; k++) {
+        const size_t size = strlen(angles[k].end);
+        if (size > length || strcmp(name + length - size, angles[k].end) != 0 ||
+            fabs(value) <= angles[k].most)
+            continue;
+        char text[200];
+        snprintf(
+            text, sizeof text,
+            "%.40s=%g: a number is taken as radians, and expected within %.4g; write degrees as "
+            "a text: '%g deg'",
+            name, value, angles[k].most, value);
+        imk_error_set(&error, IMK_ERROR_RANGE, name, "", "");
+        error.value = value;
+        error.limit = angles[k].most;
+        raise_message(&error, text);
+        return false;
+    }
+    return true;
 }
 
 bool quantity_read(PyObject *object, const char *name, const char *unit, double *value)
@@ -25,7 +58,7 @@ bool quantity_read(PyObject *object, const char *name, const char *unit, double 
     }
     if (!PyUnicode_Check(object)) {
         *value = PyFloat_AsDouble(object);
-        return !PyErr_Occurred();
+        return !PyErr_Occurred() && angle_check(*value, name, unit);
     }
     Py_ssize_t size;
     const char *text = utf8_of(object, &size);

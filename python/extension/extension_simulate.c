@@ -133,9 +133,9 @@ static PyObject *describe_motion(PyObject *module, PyObject *capsule)
     if (!file)
         return NULL;
     const imk_recorded_motion *recorded = imk_motion_file_motion(file)->recorded;
-    return Py_BuildValue("(sdsszd)", kinds[imk_motion_file_kind(file)],
+    return Py_BuildValue("(sdsNzd)", kinds[imk_motion_file_kind(file)],
                          imk_motion_file_duration(file), imk_motion_file_name(file),
-                         imk_motion_file_note(file), imk_motion_file_text(file),
+                         told_text(imk_motion_file_note(file)), imk_motion_file_text(file),
                          recorded ? recorded->rate : 0.0);
 }
 

@@ -37,8 +37,8 @@ static PyObject *curve_of(const imk_spectrum_log *s, size_t channel)
     bool good = true;
     for (int k = 0; k < CURVE_NUMBERS; k++) {
         made[k] = PyBytes_FromStringAndSize(NULL, size);
-        good = good && made[k];
         to[k] = made[k] ? (double *)(void *)PyBytes_AsString(made[k]) : NULL;
+        good = good && to[k];
     }
     for (size_t i = 0; good && i < f->fine_count; i++) {
         const imk_spectrum_band b = imk_spectrum_log_band(s, channel, &f->fine[i]);
@@ -58,7 +58,7 @@ static PyObject *curve_of(const imk_spectrum_log *s, size_t channel)
 static PyObject *curves_of(const imk_spectrum_log *s)
 {
     PyObject *list = PyList_New(0);
-    for (size_t c = 0; list && c < s->record.count; c++) {
+    for (size_t c = 0; list && s && c < s->record.count; c++) {
         PyObject *curve = curve_of(s, c);
         if (!curve || PyList_Append(list, curve) != 0)
             Py_CLEAR(list);

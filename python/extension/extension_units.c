@@ -3,6 +3,7 @@
 #include "extension.h"
 
 #include "imukit/earth.h"
+#include "imukit/memory_limit.h"
 #include "imukit/units.h"
 
 static bool arguments(const char *name, Py_ssize_t count, Py_ssize_t due)
@@ -36,9 +37,9 @@ static PyObject *normal_gravity(PyObject *module, PyObject *const *args, Py_ssiz
     (void)module;
     if (!arguments("normal_gravity", count, 2))
         return NULL;
-    const double latitude = PyFloat_AsDouble(args[0]);
-    const double height = PyErr_Occurred() ? 0 : PyFloat_AsDouble(args[1]);
-    if (PyErr_Occurred())
+    double latitude, height;
+    if (!quantity_read(args[0], "latitude", "rad", &latitude) ||
+        !quantity_read(args[1], "height", "m", &height))
         return NULL;
     return PyFloat_FromDouble(imk_normal_gravity(latitude, height));
 }
@@ -52,6 +53,14 @@ static PyObject *quantity(PyObject *module, PyObject *const *args, Py_ssize_t co
     const char *name = utf8_of(args[0], NULL);
     const char *unit = name ? utf8_of(args[2], NULL) : NULL;
     return unit && quantity_read(args[1], name, unit, &value) ? PyFloat_FromDouble(value) : NULL;
+}
+
+/* memory_limit() -> memory that this process may take [bytes] */
+static PyObject *memory_limit(PyObject *module, PyObject *none)
+{
+    (void)module;
+    (void)none;
+    return PyLong_FromSize_t(imk_memory_limit());
 }
 
 enum { NUMBERS_MAX = 16 };
@@ -95,11 +104,13 @@ PyMethodDef unit_functions[] = {
      ">>> import imukit\n"
      ">>> round(imukit.convert_unit(1.0, 'deg/h', 'rad/s'), 12)\n"
      "4.848137e-06\n"},
+    {"memory_limit", memory_limit, METH_NOARGS, "memory_limit(): of this process [bytes]."},
     {"normal_gravity", (PyCFunction)(void (*)(void))normal_gravity, METH_FASTCALL,
      "normal_gravity(latitude, height, /)\n--\n\n"
      "Normal gravity [m/s^2] at a geodetic latitude [rad] and a height [m] above the ellipsoid "
-     "(WGS 84).\n\n"
-     ">>> import imukit, math\n"
-     ">>> round(imukit.normal_gravity(math.radians(45), 0.0), 6)\n"
+     "(WGS 84); both may be texts with a unit. Raises imukit.Error: a latitude beyond the "
+     "poles.\n\n"
+     ">>> import imukit\n"
+     ">>> round(imukit.normal_gravity('45 deg', 0.0), 6)\n"
      "9.806198\n"},
     {NULL, NULL, 0, NULL}};

@@ -173,7 +173,8 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
     estimate     terms to estimate: "bias,scale_factor,accel.misalignment"; None: those that the
                  procedures determine
     with_, without  terms to estimate in addition, or not to: 'nonlinearity', 'cross_products',
-                 'g_sensitivity', 'g2_sensitivity', 'gyro'
+                 'g_sensitivity', 'g2_sensitivity', 'gyro' (multiposition: the gyros' scale factors
+                 and misalignments, by the turns; bias and g-sensitivity come from the rests)
     accel_sensitivity, gyro_sensitivity  nominal, for records in counts [count/(m/s^2)],
                  [count/(rad/s)]; one number, or one for each axis
     accel_zero, gyro_zero  counts at zero input
@@ -228,7 +229,7 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
     if "device" in log:
         log = {**log, "accel_range": accel_range, "gyro_range": gyro_range}
     if pose_means and rate is not None and all(map(_core.procedures.get, procedures)):
-        raise ValueError("rate is of logs; a table of pose means has no times: leave it out")
+        raise ValueError("rate: a table of pose means has no times; leave it out")
     names = tuple(os.fspath(run) if is_path(run) else f"run {k + 1}" for k, run in enumerate(runs))
     if repeats and any(_is_model(run) for run in runs):
         opened = tuple(as_model(run)._core for run in runs)

@@ -26,6 +26,7 @@ class Motion:
                default 45 deg, 0 m
     seed       of random vibration
 
+    Motions can be copied; those of a script and at rest can be pickled.
     Motion.parse(text) reads the text of a script, Motion.at_rest() is a unit that stands. Raises
     imukit.Error. Source: include/imukit/motion_file.h.
 
@@ -58,6 +59,7 @@ class Motion:
         place = _place(latitude, height)
         if is_path(source):
             hertz = 0.0 if rate is None else si("rate", rate, "Hz")
+            self._parsed = place, seed
             self._describe(_core.open_motion(source, hertz, place, seed))
         else:
             self._describe(_core.motion_of_record(open_record(source, rate, None), place))
@@ -67,7 +69,9 @@ class Motion:
               seed: int = 1) -> Motion:
         """The motion of the text of a script."""
         made = cls.__new__(cls)
-        made._describe(_core.parse_motion(text, _place(latitude, height), seed))
+        place = _place(latitude, height)
+        made._parsed = place, seed
+        made._describe(_core.parse_motion(text, place, seed))
         return made
 
     @classmethod
@@ -105,11 +109,36 @@ class Motion:
         from ._simulate import simulate_truth  # which needs this module
         return simulate_truth(rate, duration, self, threads=threads)
 
+    def __copy__(self) -> Motion:
+        made = type(self).__new__(type(self))
+        made.__dict__.update(self.__dict__)
+        return made
+
+    def __deepcopy__(self, memo: Any) -> Motion:
+        return self.__copy__()
+
     def __reduce__(self) -> tuple[Any, ...]:
-        raise TypeError("a Motion cannot be pickled or copied: make another of its source")
+        if self.kind == "rest":
+            return _at_rest, (dict(self._rest),)
+        if self.text is None:
+            raise TypeError("a Motion of columns cannot be pickled: pickle what it was made of, and "
+                            "make another")
+        return _of_text, (self.text, *self._parsed)
 
     def __repr__(self) -> str:
         return f"Motion: {self.kind} of {self.duration:g} s"
+
+
+def _at_rest(arguments: Mapping[str, Any]) -> Motion:
+    return Motion.at_rest(**arguments)
+
+
+def _of_text(text: str, place: tuple[float, float] | None, seed: int) -> Motion:
+    with warnings.catch_warnings():  # told when the motion was made
+        warnings.simplefilter("ignore", DataWarning)
+        if place is None:
+            return Motion.parse(text, seed=seed)
+        return Motion.parse(text, latitude=place[0], height=place[1], seed=seed)
 
 
 def _place(latitude: float | str | None, height: float | str) -> tuple[float, float] | None:

@@ -21,7 +21,7 @@ import math
 import os
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from . import _arrays, _core
 from ._log import Log, made_log
@@ -389,7 +389,8 @@ class Instrument:
         signal_rate       rows of signals per second [Hz]; None: output_rate
         progress          called with (stage, unit, done, total); a false value but None ends the work
 
-        Raises imukit.Error: an input out of range, a run with too many internal steps.
+        Raises imukit.Error: an input out of range, a run with too many internal steps;
+        MemoryError: more samples than the memory holds.
 
         >>> import imukit
         >>> run = imukit.physics.PendulousServo().run(1, acceleration="1 g", noise=False)
@@ -399,7 +400,8 @@ class Instrument:
         if sine is not None and rate == 0 and acceleration == 0:
             raise ValueError("sine: a rate or an acceleration is its amplitude, and there is none")
         inner_rate = output_rate if signal_rate is None else signal_rate
-        rows, inner = _rows(duration, output_rate), _rows(duration, inner_rate)
+        rows = _rows(duration, output_rate, len(self.about.outputs) + 2)
+        inner = _rows(duration, inner_rate, len(self.about.signals) + 1)
         outputs = [_arrays.empty(rows) for _ in range(len(self.about.outputs) + 2)]
         inside = [_arrays.empty(inner) for _ in range(len(self.about.signals) + 1)]
         settings = {"duration": duration, "output_rate": output_rate, "level": level, "step": step,
@@ -545,7 +547,7 @@ def instruments() -> tuple[type[Instrument], ...]:
     return tuple(_kinds.values())
 
 
-def _rows(duration: float | str, rate: float | str) -> int:
+def _rows(duration: float | str, rate: float | str, columns: int) -> int:
     """Rows of a run; 1 where the library is to refuse it."""
     every = si("rate", rate, "Hz")
     if not 0 < every < math.inf:
@@ -553,8 +555,10 @@ def _rows(duration: float | str, rate: float | str) -> int:
     samples = si("duration", duration, "s") * every
     if not 0 < samples < math.inf:
         return 1
-    if samples >= 2 ** 40:
-        raise MemoryError(f"{samples:g} samples are too many for the memory")
+    limit = _core.memory_limit() / 2
+    if samples * columns * 8 > limit:
+        raise MemoryError(f"{samples:g} samples of {columns} columns take {samples * columns * 8:.3g} "
+                          f"bytes of {limit:.3g}: lower output_rate, signal_rate or duration")
     return max(math.floor(samples + 0.5), 1)
 
 
@@ -624,5 +628,8 @@ __all__ = ["About", "Derived", "Group", "Instrument", "Parameter", "PhysicsResul
 __all__ += [kind.__name__ for kind in _kinds.values()]
 
 
-def __getattr__(name: str) -> Any:  # of the classes that are made, for type checkers
-    raise AttributeError(f"imukit.physics has no {name!r}; there are: {', '.join(__all__)}")
+if TYPE_CHECKING:  # the classes that are made, as a stub says
+    from ._instrument_types import *
+else:
+    def __getattr__(name: str) -> Any:
+        raise AttributeError(f"imukit.physics has no {name!r}; there are: {', '.join(__all__)}")

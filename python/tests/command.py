@@ -58,6 +58,9 @@ def differences(a, b, path=""):
     elif isinstance(a, float) and isinstance(b, float):
         if not math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-300):
             yield f"{path}: {a} and {b}"
+    elif isinstance(a, str) and isinstance(b, str) and " --" in a:  # b names an argument there
+        if not b.startswith(a.partition(" --")[0]):
+            yield f"{path}: {a} and {b}"
     elif a != b:
         yield f"{path}: {a} and {b}"
 

@@ -70,9 +70,27 @@ class Results(unittest.TestCase):
 
 class Others(unittest.TestCase):
     def test_motion(self):
-        for copied in pickle.dumps, copy.copy, copy.deepcopy:
-            with self.assertRaisesRegex(TypeError, "make another"):
-                copied(imukit.Motion.at_rest())
+        script = "imukit_motion: 1\nsteps: [hold 1 s, rotate z 90 deg at 90 deg/s]"
+        for motion in (imukit.Motion.parse(script, latitude="30 deg", height=100),
+                       imukit.Motion.parse(script, seed=3),
+                       imukit.Motion.at_rest(yaw="20 deg")):
+            length = None if motion.kind == "script" else 1
+            for made in copies(motion):
+                self.assertEqual(repr(made), repr(motion))
+                self.assertEqual(made.truth(10, length), motion.truth(10, length))
+        columns = imukit.Motion({name: [0.01 * k for k in range(9)] for name in (
+            "time [s]", "roll [rad]", "pitch [rad]", "yaw [rad]", "latitude [rad]",
+            "longitude [rad]", "height [m]")})
+        self.assertEqual(copy.copy(columns).duration, columns.duration)
+        self.assertEqual(copy.deepcopy(columns).kind, columns.kind)
+        with self.assertRaisesRegex(TypeError, "pickle what it was made of"):
+            pickle.dumps(columns)
+
+    def test_figure_is_kept(self):
+        result = imukit.allan([float(k * k % 101) for k in range(300)], 1)
+        made = pickle.loads(pickle.dumps(result))
+        self.assertIn("<svg", made._repr_html_())
+        self.assertEqual(made._repr_html_(), result._repr_html_())
 
     def test_closed_blocks(self):
         with imukit.simulate_blocks("tactical", 100, rows=10) as blocks:

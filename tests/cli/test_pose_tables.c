@@ -230,8 +230,10 @@ static void what_does_not_go_with_it(void **state)
     check_says("$I calibrate table.csv -p rate-table --pose-means", 2, "rate-table needs a log");
     check_says("$I calibrate table.csv -p repeatability --pose-means", 2,
                "repeatability needs a log");
-    check_says("$I calibrate table.csv" TABLE " --window 2s", 2, "--window is of logs");
-    check_says("$I calibrate table.csv" TABLE " --rate 100Hz", 2, "--rate is of logs");
+    check_says("$I calibrate table.csv" TABLE " --window 2s", 2,
+               "--window: a table of pose means has no times");
+    check_says("$I calibrate table.csv" TABLE " --rate 100Hz", 2,
+               "--rate: a table of pose means has no times");
     check_says("$I calibrate table.csv" TABLE " --axes right-forward-up", 2,
                "--axes does not go with --pose-means");
     check_says("$I calibrate table.csv -p tumble --pose-means", 1, "reference_force_x [g]");

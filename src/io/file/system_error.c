@@ -40,5 +40,8 @@ imk_status imki_system_error(imk_error *error, imk_status status, const char *pa
     /* strerror() may share a buffer between threads; this is the POSIX strerror_r(), not GNU's. */
     if (strerror_r(number, reason, sizeof reason) != 0)
         snprintf(reason, sizeof reason, "system error %d", number);
-    return imk_error_set(error, status, path, reason, remedy_for(status, number));
+    imk_error_set(error, status, path, reason, remedy_for(status, number));
+    if (error)
+        error->value = number;
+    return status;
 }

@@ -209,7 +209,7 @@ static imk_status check_means(const imk_calibrate_log *b, imk_error *error)
     for (size_t k = 0; !logs && k < sizeof times / sizeof times[0]; k++)
         if (!isnan(times[k].value))
             return imk_error_set(error, IMK_ERROR_CONFLICT, times[k].field,
-                                 "is of logs; a table of pose means has no times", "leave it out");
+                                 "a table of pose means has no times", "leave it out");
     return IMK_OK;
 }
 
