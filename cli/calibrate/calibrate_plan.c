@@ -18,51 +18,16 @@ typedef struct plan {
 
 /* ---- requirements ---------------------------------------------------------------------------- */
 
-/* "accel.scale_factor 50 ppm": every number of the term. */
-static int parse_requirement(plan *p, const char *text, size_t length)
-{
-    char item[160];
-    snprintf(item, sizeof item, "%.*s", (int)(length < 159 ? length : 159), text);
-    char *name = item + strspn(item, " "), *value = name + strcspn(name, " ");
-    if (!*value)
-        return command_misused("--want \"%s\": expected a term and its 1 sigma, such as "
-                               "\"accel.scale_factor 50 ppm\"",
-                               name);
-    *value++ = '\0';
-    imk_model_parameter parameter[IMK_CORRELATED_MAX];
-    size_t count = 0;
-    imk_error error;
-    if (imk_calibrate_terms(p->b->found->calibration, p->b->settings.temperature_order, name,
-                            IMK_CORRELATED_MAX, parameter, &count, &error) != IMK_OK)
-        return session_terms_refused("want", &error);
-    for (size_t k = 0; k < count; k++) {
-        double sigma, unused;
-        size_t numbers;
-        const char *unit = imk_parameter_file_unit(parameter[k]);
-        if (imk_quantity_parse(value, value + strlen(value), imk_unit_of(unit).dimension, 1, &sigma,
-                               &unused, &numbers, NULL, &error) != IMK_OK ||
-            !(sigma > 0))
-            return command_misused("--want \"%s %s\": expected a positive number with a unit such "
-                                   "as %s",
-                                   name, value, unit);
-        if (p->settings.requirement_count == IMK_CORRELATED_MAX)
-            return command_misused("--want: there are more than %d numbers", IMK_CORRELATED_MAX);
-        p->requirement[p->settings.requirement_count++] =
-            (imk_sigma_requirement){.parameter = parameter[k], .sigma = sigma};
-    }
-    return -1;
-}
-
 static int parse_requirements(plan *p)
 {
-    int code = -1;
-    for (const char *text = p->b->options->want; code < 0 && text && *text;) {
-        const size_t length = strcspn(text, ",");
-        code = parse_requirement(p, text, length);
-        text += length + (text[length] == ',');
-    }
+    imk_error error;
+    const imk_status status = imk_calibrate_requirements(
+        p->b->found->calibration, p->b->settings.temperature_order, p->b->options->want,
+        IMK_CORRELATED_MAX, p->requirement, &p->settings.requirement_count, &error);
     p->settings.requirement = p->requirement;
-    return code;
+    if (status == IMK_ERROR_SYNTAX)
+        return command_misused("--want \"%s\": expected %s", error.found, error.expected);
+    return status == IMK_OK ? -1 : session_terms_refused("want", &error);
 }
 
 /* ---- programme as a file --------------------------------------------------------------------- */
@@ -142,29 +107,16 @@ static int set_up(plan *p)
     const calibrate_options *o = b->options;
     imk_document *unused = NULL;
     int code = -1;
-    if (b->settings.repeatability)
-        code = command_misused("--plan: repeatability needs no programme; record as many power "
-                               "cycles as you can, ten or more");
-    if (code < 0 && b->found->record[0].procedure == IMK_PROCEDURE_MAGNETOMETER)
-        code = command_misused("--plan: magnetometer needs no programme; turn the unit slowly by "
-                               "hand for a minute, so that each of its axes points along the field "
-                               "and against it");
+    imk_error error;
+    if (imk_calibrate_plan_settings(b->found, &p->settings, &error) != IMK_OK)
+        code = command_misused("--plan: %s; %s", error.found, error.expected);
     if (code < 0)
         code = command_model(b->path[0], &b->found->calibration->model, &unused);
     imk_document_free(unused);
     if (code >= 0)
         return code;
-    p->settings = imk_plan_default(b->found->record[0].procedure);
-    p->settings.nonlinear = b->found->record[0].settings.nonlinear;
-    p->settings.cross_products = b->found->record[0].settings.cross_products;
-    p->settings.g_sensitivity = b->found->record[0].settings.g_sensitivity;
-    p->settings.placement_sigma = b->found->record[0].settings.placement_sigma;
-    p->settings.fixture_sigma = b->found->record[0].settings.fixture_sigma;
-    p->settings.turn_angle = b->found->record[0].settings.turn_angle;
     if (!isnan(o->soak))
         p->settings.soak = o->soak;
-    if (o->temperature_order.given)
-        p->settings.temperature_order = (int)o->temperature_order.value;
     if (o->log.file.rate > 0)
         p->settings.rate = o->log.file.rate;
     return parse_requirements(p);

@@ -118,19 +118,6 @@ static int take_terms(session *b)
     return code < 0 ? take_switches("without", o->without, &b->settings.without) : code;
 }
 
-/* "k2, koq, " and so on. */
-static void name_powers(char *text, size_t size)
-{
-    static const char group[] = "nonlinearity.";
-    size_t length = 0;
-    for (int term = 0; term < IMK_MODEL_TERMS && length < size; term++) {
-        char path[IMK_MODEL_PARAMETER_NAME];
-        if (imk_calibrate_term_path(0, term, path) && strncmp(path, group, sizeof group - 1) == 0)
-            length +=
-                (size_t)snprintf(text + length, size - length, "%s, ", path + sizeof group - 1);
-    }
-}
-
 int session_terms_refused(const char *option_name, const imk_error *error)
 {
     const char *name = error->field;
@@ -139,14 +126,7 @@ int session_terms_refused(const char *option_name, const imk_error *error)
     if (error->status == IMK_ERROR_WORKSPACE)
         return command_misused("--%s: there are more than %d numbers", option_name,
                                IMK_CORRELATED_MAX);
-    char powers[128];
-    name_powers(powers, sizeof powers);
-    return command_misused("--%s %s: no such term; expected bias, scale_factor, misalignment, "
-                           "nonlinearity, %scross_products, g_sensitivity, g2_sensitivity, "
-                           "lever_arm, bias.temperature, scale_factor.temperature or "
-                           "temperature_rate, with gyro. or accel. before it for one sensor only, "
-                           "or a single number such as accel.bias.fixed.x",
-                           option_name, name, powers);
+    return command_misused("--%s %s: no such term; %s", option_name, name, error->expected);
 }
 
 /* ---- procedures ------------------------------------------------------------------------------ */

@@ -239,8 +239,8 @@ IMK_API imk_status imk_calibrate_log_compare(imk_calibrate_log *session,
  *  with "gyro." or "accel." before it of one; or one number, such as "accel.bias.fixed.x".
  *  @param temperature_order  of polynomials, 0: 3
  *  @param parameter,count    room for `capacity`; `count` are there before
- *  @return IMK_ERROR_KEY_UNKNOWN, IMK_ERROR_RANGE (no such axis), IMK_ERROR_WORKSPACE (more than
- *          `capacity`); error->field is the name */
+ *  @return IMK_ERROR_KEY_UNKNOWN (error->expected: the names that there are), IMK_ERROR_RANGE (no
+ *          such axis), IMK_ERROR_WORKSPACE (more than `capacity`); error->field is the name */
 IMK_API imk_status imk_calibrate_terms(const imk_calibration *calibration, int temperature_order,
                                        const char *name, size_t capacity,
                                        imk_model_parameter *parameter, size_t *count,
@@ -263,6 +263,27 @@ IMK_API bool imk_calibrate_advise(const imk_calibrate_log *session, const imk_ca
 
 /** @name Programmes of tests
  *  @{ */
+/** The settings of a plan for the procedure of a calibration's first record: its terms, placement,
+ *  mounting, turns, order of the temperature; sampling rate, soak and the rest are the defaults.
+ *  @param session  of imk_calibrate_log_create(); its calibration gives frame, gravity and place,
+ *                  and imk_calibrate_plan_run() takes it with the unit's model in it
+ *  @return IMK_ERROR_UNSUPPORTED (repeatability or magnetometer: error->found says that it needs no
+ *          programme, error->expected what to do) */
+IMK_API imk_status imk_calibrate_plan_settings(const imk_calibrate_log *session,
+                                               imk_plan_settings *settings, imk_error *error);
+
+/** Read requirements as they are written: "accel.scale_factor 50 ppm, gyro.bias 5 deg/h", each a
+ *  name of imk_calibrate_terms() and the 1 sigma of all its numbers.
+ *  @param temperature_order  as for imk_calibrate_terms()
+ *  @param text               NULL or "": none
+ *  @param requirement,count  room for `capacity`; receive sigma and parameter
+ *  @return IMK_ERROR_SYNTAX (error->field is "want", found what stood there), IMK_ERROR_WORKSPACE
+ *          (more than `capacity`), errors of imk_calibrate_terms() */
+IMK_API imk_status imk_calibrate_requirements(const imk_calibration *calibration,
+                                              int temperature_order, const char *text,
+                                              size_t capacity, imk_sigma_requirement *requirement,
+                                              size_t *count, imk_error *error);
+
 typedef struct imk_calibrate_plan {
     imk_plan_settings settings; /**< with requirements of its own, which say what is expected */
     imk_plan_step *step;

@@ -100,6 +100,32 @@ static bool collect_named(const imk_calibration *c, int order, int sensor, const
     return found;
 }
 
+/* "k2, koq, " and so on. */
+static void name_powers(char *text, size_t size)
+{
+    static const char group[] = "nonlinearity.";
+    size_t length = 0;
+    for (int term = 0; term < IMK_MODEL_TERMS && length < size; term++) {
+        char path[IMK_MODEL_PARAMETER_NAME];
+        if (imk_calibrate_term_path(0, term, path) && strncmp(path, group, sizeof group - 1) == 0)
+            length +=
+                (size_t)snprintf(text + length, size - length, "%s, ", path + sizeof group - 1);
+    }
+}
+
+static imk_status refuse_name(const char *name, imk_error *error)
+{
+    char powers[128], expected[sizeof error->expected];
+    name_powers(powers, sizeof powers);
+    snprintf(expected, sizeof expected,
+             "expected bias, scale_factor, misalignment, nonlinearity, %scross_products, "
+             "g_sensitivity, g2_sensitivity, lever_arm, bias.temperature, "
+             "scale_factor.temperature or temperature_rate, with gyro. or accel. before it for one "
+             "sensor only, or a single number such as accel.bias.fixed.x",
+             powers);
+    return imk_error_set(error, IMK_ERROR_KEY_UNKNOWN, name, NULL, expected);
+}
+
 imk_status imk_calibrate_terms(const imk_calibration *calibration, int temperature_order,
                                const char *name, size_t capacity, imk_model_parameter *parameter,
                                size_t *count, imk_error *error)
@@ -109,7 +135,7 @@ imk_status imk_calibrate_terms(const imk_calibration *calibration, int temperatu
     bool found = false;
     if (imk_model_parameter_parse(name, &single) == IMK_OK && single.sensor != IMK_MAG) {
         if (!imk_model_parameter_at((imk_model *)&calibration->model, single, NULL))
-            return imk_error_set(error, IMK_ERROR_RANGE, name, NULL, NULL);
+            return imk_error_set(error, IMK_ERROR_RANGE, name, NULL, "there is no such axis");
         collect(&list, single);
         found = true;
     } else {
@@ -118,7 +144,7 @@ imk_status imk_calibrate_terms(const imk_calibration *calibration, int temperatu
                 found = true;
     }
     if (!found)
-        return imk_error_set(error, IMK_ERROR_KEY_UNKNOWN, name, NULL, NULL);
+        return refuse_name(name, error);
     if (list.count > capacity)
         return imk_error_set(error, IMK_ERROR_WORKSPACE, name, NULL, NULL);
     *count = list.count;
