@@ -14,7 +14,7 @@
 
 /* Little more than is held in memory, 2^7 3^3 5^4: a length whose transform is quick. */
 enum { ROWS = 2160000, SOUND = 0, FAULTY = 1 };
-_Static_assert(ROWS > IMK_IDENTIFY_RECORD_ADVISED, "identified in one pass");
+_Static_assert((int)ROWS > (int)IMK_IDENTIFY_RECORD_ADVISED, "identified in one pass");
 
 static const double rate = 100;
 static double *samples[2];
