@@ -6,8 +6,8 @@ static PyMethodDef *const functions[] = {
     allan_functions,    calibrate_functions, compensate_functions, design_functions,
     drift_functions,    evaluate_functions,  grade_functions,      identify_functions,
     info_functions,     model_functions,     navigate_functions,   parameter_functions,
-    physics_functions,  record_functions,    sensor_functions,     simulate_functions,
-    spectrum_functions, tune_functions,      unit_functions,
+    physics_functions,  plan_functions,      record_functions,     sensor_functions,
+    simulate_functions, spectrum_functions,  tune_functions,       unit_functions,
 };
 
 /* Types, exceptions and constants. */

@@ -217,6 +217,7 @@ extern PyMethodDef model_functions[];
 extern PyMethodDef navigate_functions[];
 extern PyMethodDef parameter_functions[];
 extern PyMethodDef physics_functions[];
+extern PyMethodDef plan_functions[];
 extern PyMethodDef record_functions[];
 extern PyMethodDef sensor_functions[];
 extern PyMethodDef simulate_functions[];

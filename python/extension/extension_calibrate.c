@@ -127,7 +127,7 @@ bool calibrate_settings_read(PyObject *dictionary, PyObject *place, imk_calibrat
                                                 &s->place.longitude, &s->place.height));
 }
 
-static imk_procedure procedure_of(PyObject *object)
+imk_procedure procedure_of(PyObject *object)
 {
     const char *name = utf8_of(object, NULL);
     char all[200] = "";
@@ -368,9 +368,6 @@ static PyObject *calibrate(PyObject *module, PyObject *args)
     session_free(b);
     return made;
 }
-
-/* ---- plans ------------------------------------------------------------------------------------
- */
 
 PyMethodDef calibrate_functions[] = {
     {"calibrate", calibrate, METH_VARARGS,

@@ -53,6 +53,8 @@ bool aids_take(PyObject *texts, imk_aid aid[IMK_AIDS_MAX], size_t *count);
  *  @param place  tuple of latitude [rad], longitude [rad], height [m]; None: not known */
 bool calibrate_settings_read(PyObject *dictionary, PyObject *place,
                              imk_calibrate_log_settings *settings);
+/** The procedure of a test by its name; IMK_PROCEDURES with an exception. */
+imk_procedure procedure_of(PyObject *object);
 
 /** Add to a list of findings; false with an exception. */
 bool add_finding(PyObject *findings, imk_finding_level level, const char *code, const char *format,

@@ -6,7 +6,8 @@ may stand for it: "0.1 deg/s".
 """
 from . import allantools, physics
 from ._allan import AllanCurve, AllanResult, allan
-from ._calibrate import CalibrateResult, Parameter, PoseResidual, calibrate
+from ._calibrate import (CalibrateResult, CalibrationPlan, Parameter, PoseResidual, calibrate,
+                         plan_calibration)
 from ._compensate import CompensatedLog, compensate, convert
 from ._core import Error, FileError, convert_unit, normal_gravity, version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
@@ -32,6 +33,7 @@ __all__ = [
     "AllanResult",
     "Blocks",
     "CalibrateResult",
+    "CalibrationPlan",
     "CompensatedLog",
     "DataWarning",
     "Device",
@@ -86,6 +88,7 @@ __all__ = [
     "normal_gravity",
     "parameter_formats",
     "physics",
+    "plan_calibration",
     "plan_record",
     "read_log",
     "simulate",

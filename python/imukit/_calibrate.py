@@ -113,6 +113,26 @@ def _vector(numbers: list[float | None] | None) -> _arrays.Array:
     return _arrays.of_numbers(numbers or ())
 
 
+class CalibrationPlan(Result):
+    """The programme of a bench test. See plan_calibration().
+
+    `steps` are its poses and inputs, `wishes` what was wanted and what is expected."""
+
+    def __init__(self, core: Any, findings: list[tuple[int, str, str, str]],
+                 sigmas: dict[str, float], programme: str | None, met: bool) -> None:
+        super().__init__(core, findings)
+        self.duration: float = plain_value(self._data["result"]["duration"]["value"])
+        """length of all, with ramps of the temperature of 1 K/min [s]"""
+        self.sigmas = sigmas
+        """1 sigma with which the test will determine each parameter, by its path in the model file,
+        in SI units (Model.unit()); NaN: it does not"""
+        self.programme = programme
+        """the text of a motion file for simulate() and calibrate(), of 'thermal' that of a file of
+        temperatures; None: 'centrifuge', whose arm no motion file describes"""
+        self.met = met
+        """the programme reaches all that is wanted"""
+
+
 _TERMS = {"nonlinearity": _core.TERM_NONLINEARITY, "cross_products": _core.TERM_CROSS_PRODUCTS,
           "g_sensitivity": _core.TERM_G_SENSITIVITY, "g2_sensitivity": _core.TERM_G2_SENSITIVITY,
           "gyro": _core.TERM_GYRO}
@@ -249,6 +269,56 @@ def calibrate(data: Data | Sequence[Data], procedure: str | Sequence[str],
         {key: _counts(given[key]) for key in _SHEET}, place, _known(model),
         before._core if before is not None else None, moved, name, poses, progress)
     result = CalibrateResult(core, findings, text, level, anyway)
+    tell(result)
+    return result
+
+
+def plan_calibration(model: ModelLike, procedure: str, want: str | None = None, *,
+                     rate: float | str | None = None,
+                     position: str | Sequence[float | str] | None = None,
+                     gravity: float | str | None = None, no_earth: bool = False,
+                     frame: str | None = None, with_: str | Sequence[str] = (),
+                     without: str | Sequence[str] = (), placement: float | str | None = None,
+                     mounting: float | str | None = None, turn_angle: float | str | None = None,
+                     temperature_order: int | None = None,
+                     soak: float | str | None = None) -> CalibrationPlan:
+    """How well a bench test will determine the errors of a unit, and the programme that does it.
+
+    model        Model with the noise of the unit, file or name of the catalogue
+    procedure    of the test, as of calibrate(), but for 'magnetometer' and 'repeatability', which
+                 need no programme
+    want         1 sigma to reach: "accel.scale_factor 50 ppm, gyro.bias 5 deg/h"; None: the
+                 shortest programme that determines all parameters. It includes the bias instability
+                 and the repeatability of the model, which no test lowers
+    rate         sampling rate [Hz]; None: 100 Hz, 'thermal' 10 Hz
+    soak         'thermal': time at each temperature before the measurement [s]; None: 600 s
+    temperature_order  'thermal': of the bias polynomial, 1 … 5; None: 3
+
+    position, gravity, no_earth, frame, with_, without, placement, mounting and turn_angle are as of
+    calibrate().
+
+    Raises imukit.Error: the model states no noise, a wish names no parameter that the procedure
+    estimates, the procedure needs no programme. Source: include/imukit/calibration_plan.h.
+
+    >>> import imukit
+    >>> plan = imukit.plan_calibration("ADIS16488", "sixposition", "accel.scale_factor 300 ppm")
+    >>> plan.met, len(plan.steps), plan.wishes[0].name
+    (True, 6, 'accel.scale_factor.fixed.x')
+    >>> plan.sigmas["accel.scale_factor.fixed.x"] < 300e-6
+    True
+    >>> imukit.Motion.parse(plan.programme).kind, plan.duration
+    ('script', 36)
+    """
+    given = {key: value for key, value in locals().items() if key in _SAME}
+    repeats = procedure == "repeatability"
+    settings = {**given, "with": _bits("with_", with_), "without": _bits("without", without),
+                "repeatability": repeats}
+    unit = as_model(model)
+    label = os.fspath(model) if isinstance(model, (str, os.PathLike)) else \
+        unit.get("name", "the model")
+    result = CalibrationPlan(*_core.plan_calibration(
+        unit._core, label, procedure, settings, _place(position), {"rate": rate, "soak": soak},
+        want))
     tell(result)
     return result
 

@@ -134,6 +134,10 @@ def calibrate(runs: tuple[Any, ...], names: tuple[str, ...], procedures: tuple[s
               place: tuple[float, float, float] | None, model: Model | None, into: Model | None,
               motion: tuple[str, Any] | None, name: str | None, poses: bool, progress: _Progress,
               /) -> tuple[Result, list[_Finding], str, int]: ...
+def plan_calibration(model: Model, name: str, procedure: str, settings: dict[str, Any],
+                     place: tuple[float, float, float] | None, plan: dict[str, Any],
+                     want: str | None, /) -> tuple[Result, list[_Finding],
+                                                   dict[str, float], str | None, bool]: ...
 def is_table(record: Record, /) -> bool: ...
 def evaluate(records: tuple[Record, ...], rest: Record | None, settings: dict[str, Any],
              reading: dict[str, Any], quantities: dict[str, Any], sheet: dict[str, Any],
