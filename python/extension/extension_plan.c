@@ -26,20 +26,19 @@ static bool plan_take(const imk_calibrate_log *session, PyObject *dictionary, co
     return SETTINGS_READ(dictionary, plan_rows, s);
 }
 
-/* (name, 1 sigma, unit) of each parameter. */
-static PyObject *list_sigmas(const imk_plan_result *r)
+/* 1 sigma of each parameter by its name. */
+static PyObject *sigmas_of(const imk_plan_result *r)
 {
-    PyObject *list = PyList_New(0);
-    for (size_t k = 0; list && k < r->parameter_count; k++) {
+    PyObject *sigmas = PyDict_New();
+    for (size_t k = 0; sigmas && k < r->parameter_count; k++) {
         char name[IMK_MODEL_PARAMETER_NAME] = "";
         (void)imk_model_parameter_name(r->parameter[k], name);
-        PyObject *item =
-            Py_BuildValue("(sds)", name, r->sigma[k], imk_model_parameter_unit(r->parameter[k]));
-        if (!item || PyList_Append(list, item) != 0)
-            Py_CLEAR(list);
-        Py_XDECREF(item);
+        PyObject *sigma = PyFloat_FromDouble(r->sigma[k]);
+        if (!sigma || PyDict_SetItemString(sigmas, name, sigma) != 0)
+            Py_CLEAR(sigmas);
+        Py_XDECREF(sigma);
     }
-    return list;
+    return sigmas;
 }
 
 /* Its file; None where there can be none. */
@@ -63,7 +62,7 @@ static PyObject *show(const imk_calibrate_plan *plan, const imk_geodetic *place,
     if (!result)
         return NULL;
     imk_show_calibrate_plan(plan, name, result);
-    PyObject *made = extended(result_with(result, &none, name, name), list_sigmas(&plan->result));
+    PyObject *made = extended(result_with(result, &none, name, name), sigmas_of(&plan->result));
     made = extended(made, made ? programme(plan, place) : NULL);
     return extended(made,
                     made ? PyBool_FromLong(plan->result.reached == plan->settings.requirement_count)

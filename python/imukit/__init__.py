@@ -6,8 +6,8 @@ may stand for it: "0.1 deg/s".
 """
 from . import allantools, physics
 from ._allan import AllanCurve, AllanResult, allan
-from ._calibrate import (CalibrateResult, CalibrationPlan, Expected, Parameter, PoseResidual,
-                         calibrate, plan_calibration)
+from ._calibrate import (CalibrateResult, CalibrationPlan, Parameter, PoseResidual, calibrate,
+                         plan_calibration)
 from ._compensate import CompensatedLog, compensate, convert
 from ._core import Error, FileError, convert_unit, normal_gravity, version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift

@@ -42,6 +42,50 @@ class InFolder(command.SameAsCommand):
         warnings.simplefilter("ignore", imukit.DataWarning)
 
 
+class Plans(InFolder):
+    def test_as_command(self):
+        for procedure, want, more, words in (
+                ("multiposition", "accel.scale_factor 100 ppm, gyro.bias 1 mdeg/s", {}, ()),
+                ("tumble", None, {"mounting": "0.1 deg", "rate": 50},
+                 ("--mounting", "0.1deg", "--rate", "50Hz")),
+                ("thermal", None, {"soak": 120, "temperature_order": 2},
+                 ("--soak", "2min", "--temperature-order", "2"))):
+            plan = imukit.plan_calibration("ADIS16488", procedure, want, **more)
+            words = ("calibrate", "--plan", "ADIS16488", "-p", procedure, *words,
+                     *(("--want", want) if want else ()))
+            self.same(plan, *words)
+            command.run(self.folder, *words, "-o", "plan.yaml")
+            with open("plan.yaml", encoding="utf-8") as file:
+                self.assertEqual(plan.programme, file.read())
+            for wish in plan.wishes:
+                self.assertGreater(plan.sigmas[wish.name], 0)
+                self.assertEqual(wish.reached, wish.expected <= wish.wish)
+            self.assertEqual(plan.met, all(wish.reached for wish in plan.wishes))
+            again = pickle.loads(pickle.dumps(plan))
+            self.assertEqual((again.duration, again.programme), (plan.duration, plan.programme))
+        self.assertIsNone(imukit.plan_calibration("ADIS16488", "centrifuge").programme)
+
+    def test_refused(self):
+        for procedure, more, kind, said in (
+                ("magnetometer", {}, imukit.Error, "needs no programme"),
+                ("repeatability", {}, imukit.Error, "needs no programme"),
+                ("sixposition", {"want": "accel.bias"}, imukit.Error, "a term and its 1 sigma"),
+                ("sixposition", {"want": "bais 5 mg"}, imukit.Error, "expected bias"),
+                ("sixposition", {"want": "gyro.scale_factor 5 ppm"}, imukit.Error, "estimates"),
+                ("sixposition", {"want": 5}, TypeError, ""),
+                ("sixposition", {"frame": "x"}, ValueError, "frame"),
+                ("sixposition", {"with_": "x"}, ValueError, "with_"),
+                ("thermal", {"rate": math.nan}, imukit.Error, "rate"),
+                ("thermal", {"soak": -1}, imukit.Error, "soak"),
+                ("shake", {}, ValueError, "procedure"), (None, {}, TypeError, "")):
+            with self.assertRaisesRegex(kind, said):
+                imukit.plan_calibration("ADIS16488", procedure, **more)
+        with self.assertRaisesRegex(imukit.Error, "noise"):
+            imukit.plan_calibration(imukit.Model(), "sixposition")
+        with self.assertRaises(TypeError):
+            imukit.plan_calibration(None, "sixposition")
+
+
 class Same(InFolder):
     def test_calibrate(self):
         result = imukit.calibrate("bench1.csv", "multiposition", gravity="9.81 m/s^2",
