@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Records that become other records: compensated, and converted. */
+/* Records that become other records: compensated, converted, and written to a file. */
 #include "extension.h"
 
 #include "imukit/convert_log.h"
+#include "imukit/log.h"
 #include "imukit/show.h"
+
+#include <stdio.h>
+#include <string.h>
 
 static const setting compensate_rows[] = {
 #define ROW(field, kind, words)                                                                    \
@@ -131,8 +135,72 @@ static PyObject *convert(PyObject *module, PyObject *args)
     return made;
 }
 
+static const setting write_rows[] = {
+    {"to_time_unit", SETTING_UNIT, offsetof(imk_convert_log_settings, time_unit), NULL},
+    {"to_gyro_unit", SETTING_UNIT, offsetof(imk_convert_log_settings, gyro_unit), NULL},
+    {"to_accel_unit", SETTING_UNIT, offsetof(imk_convert_log_settings, accel_unit), NULL},
+    {"to_temperature_unit", SETTING_UNIT, offsetof(imk_convert_log_settings, temperature_unit),
+     NULL},
+};
+
+/* What failed while a record was written: the output, a unit, or the record. */
+static void raise_unwritten(const imk_findings *findings, imk_error *error, const record *r)
+{
+    const imk_finding *failure = imk_findings_failure(findings);
+    if (!failure && error->status == IMK_ERROR_DIMENSION) {
+        char option[sizeof error->field];
+        memcpy(option, error->field, sizeof option);
+        snprintf(error->field, sizeof error->field, "--to-%.80s", option);
+    }
+    if (!failure || strcmp(failure->code, "not_written") == 0)
+        raise_error(error, NULL);
+    else
+        raise_failure(findings, error, r->name, "the model");
+}
+
+/* write_log(record, path, decimals, origin, settings, threads, progress) -> (findings, rows)
+ * decimals  digits after the point; negative: as many as a number needs
+ * origin    time from which those of arrays count [ns] */
+static PyObject *write_log(PyObject *module, PyObject *args)
+{
+    PyObject *object, *dictionary, *progress, *made = NULL;
+    int threads;
+    imk_convert_log_settings s = imk_convert_log_default();
+    imk_log_sink written = {.path = NULL};
+    long long origin;
+    imk_findings findings = {.count = 0};
+    work w;
+    (void)module;
+    if (!PyArg_ParseTuple(args, "OsiLO!iO", &object, &written.path, &written.decimals, &origin,
+                          &PyDict_Type, &dictionary, &threads, &progress) ||
+        !SETTINGS_READ(dictionary, write_rows, &s))
+        return NULL;
+    written.fixed = written.decimals >= 0;
+    record *r = record_begin(object);
+    if (r && work_begin(&w, threads, progress)) {
+        imk_error error;
+        written.origin = r->reader ? r->source.findings(r->source.context).time_origin_nanoseconds
+                                   : (int64_t)origin;
+        const imk_record_sink sink = imk_log_sink_of(&written);
+        imk_status status = imk_convert_log_run(&r->source, &s, &sink, &w.job, &findings, &error);
+        const imk_status ended = imk_log_sink_end(&written, status, &error);
+        const bool done = work_end(&w);
+        if (done && status == IMK_OK && ended != IMK_OK)
+            raise_error(&error, NULL);
+        else if (done && status != IMK_OK)
+            raise_unwritten(&findings, &error, r);
+        PyObject *list = PyErr_Occurred() ? NULL : list_findings(&findings, r->name, "the model");
+        made = list ? Py_BuildValue("(NK)", list, (unsigned long long)written.rows) : NULL;
+    }
+    if (r)
+        record_end(r);
+    return made;
+}
+
 PyMethodDef compensate_functions[] = {
     {"compensate", compensate, METH_VARARGS,
      "compensate(record, model, terms, name, settings, threads, progress)."},
     {"convert", convert, METH_VARARGS, "convert(record, settings, threads, progress)."},
+    {"write_log", write_log, METH_VARARGS,
+     "write_log(record, path, decimals, origin, settings, threads, progress)."},
     {NULL, NULL, 0, NULL}};

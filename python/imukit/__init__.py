@@ -8,7 +8,7 @@ from . import allantools, physics
 from ._allan import AllanCurve, AllanResult, allan
 from ._calibrate import (CalibrateResult, CalibrationPlan, Parameter, PoseResidual, calibrate,
                          plan_calibration)
-from ._compensate import CompensatedLog, compensate, convert
+from ._compensate import CompensatedLog, compensate, convert, write_log
 from ._core import Error, FileError, convert_unit, normal_gravity, version as __version__
 from ._drift import DriftGrowth, DriftMoments, DriftResult, DriftRuns, DriftShare, drift
 from ._estimates import Estimate
@@ -45,7 +45,6 @@ __all__ = [
     "Error",
     "Estimate",
     "EvaluateResult",
-    "Expected",
     "Fields",
     "Figure",
     "FileError",
@@ -98,4 +97,5 @@ __all__ = [
     "simulate_truth",
     "spectrum",
     "tune",
+    "write_log",
 ]

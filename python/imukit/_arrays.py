@@ -84,11 +84,20 @@ def of_matrix(numbers: bytes, columns: int, which: range, shape: tuple[int, ...]
     return memoryview(made).cast("B").cast("d", (rows, *shape))
 
 
+def times(count: int, rate: float) -> Any:
+    """Times of equally spaced samples from 0 [s]."""
+    if numpy is not None:
+        return numpy.arange(count) / rate
+    return array.array("d", (k / rate for k in range(count)))
+
+
 def columns_of(matrix: Any) -> list[Any]:
     """The columns of a matrix, not copied where NumPy made it or its rows follow each other."""
-    if hasattr(matrix, "T"):
+    if hasattr(matrix, "T") and matrix.ndim == 2:
         return list(matrix.T)
     view: Any = memoryview(matrix)
+    if view.ndim == 1:
+        return [matrix]
     rows, columns = view.shape or (0, 0)
     if not view.c_contiguous:
         copied = array.array(view.format, (view[i, j] for i in range(rows) for j in range(columns)))

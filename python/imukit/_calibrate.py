@@ -59,16 +59,6 @@ class PoseResidual:
     """0: left out, 1: full weight"""
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class Expected:
-    """How well a parameter will be known."""
-
-    sigma: float
-    """1 sigma [unit]; NaN: the test does not determine it"""
-    unit: str
-    """SI unit"""
-
-
 class CalibrateResult(Result):
     """What bench tests say of a unit. See calibrate()."""
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Logs that become other logs: compensated, and converted."""
+"""Logs that become other logs: compensated, converted, and written to files."""
 from __future__ import annotations
 
 import os
@@ -124,6 +124,57 @@ def convert(data: Data, rate: float | str | None = None, *,
         if LEVELS[level] == "warning":
             warnings.warn(message, DataWarning, stacklevel=2)
     return Log(_name(data), described)
+
+
+def write_log(path: str | os.PathLike[str], data: Data, rate: float | str | None = None, *,
+              to_gyro_unit: str | None = None, to_accel_unit: str | None = None,
+              to_time_unit: str | None = None, to_temperature_unit: str | None = None,
+              decimals: int | None = None, columns: str | Sequence[str] | None = None,
+              threads: int = 0, progress: Callable[[str, str, int, int], object] | None = None,
+              **log: Any) -> int:
+    """Write a log to a file, and give the number of rows.
+
+    path      the ending tells the format: .csv (also .csv.gz, .csv.zst), .npy, .npz, .mat, .h5,
+              .bag, .mcap (docs/log-formats.md). The file is complete, or is as it was before
+    data      path of a log, whose increments become rates; a Log; or columns with names such as
+              gyro_x
+    rate      sampling rate [Hz], or a text such as "200 Hz"; without a column of times one is written
+              by it, so that it is not lost
+    to_gyro_unit, to_accel_unit, to_time_unit, to_temperature_unit  units written, such as "deg/s";
+              without, SI, or those of the log that `data` is the path of
+    decimals  digits after the point in a text, 0 … 17; without, as many as the number needs, so that
+              the same number is read back
+    columns   names of the columns, with units in brackets ("gyro_x [deg/s]"); without, SI
+    threads   0: one per processor
+    progress  called with (stage, unit, done, total); a false value but None ends the work
+    log       options for reading a log: see read_log()
+
+    Raises imukit.Error, imukit.FileError. Source: include/imukit/convert_log.h, log.h.
+
+    >>> import imukit, os, tempfile
+    >>> log = imukit.simulate("tactical", rate=100, duration=1)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = os.path.join(folder, "log.csv")
+    ...     rows = imukit.write_log(path, log, to_gyro_unit="deg/s")
+    ...     back = imukit.read_log(path)
+    >>> rows, back.written_units["gyro_x"], back["accel_x"][7] == log["accel_x"][7]
+    (100, 'deg/s', True)
+    """
+    if decimals is not None and not 0 <= decimals <= 17:
+        raise ValueError(f"decimals={decimals}: expected 0 … 17")
+    name = os.fspath(path)
+    if name == "-":
+        raise ValueError("path='-': expected a file")
+    settings = {"to_gyro_unit": to_gyro_unit, "to_accel_unit": to_accel_unit,
+                "to_time_unit": to_time_unit, "to_temperature_unit": to_temperature_unit}
+    record = open_record(data, rate, columns, log, stamped=True)
+    findings, rows = _core.write_log(record, name, -1 if decimals is None else decimals,
+                                     getattr(data, "time_origin_nanoseconds", 0), settings, threads,
+                                     progress)
+    for level, code, message, _ in findings:
+        if LEVELS[level] == "warning" and code != "unused_sensor":
+            warnings.warn(message, DataWarning, stacklevel=2)
+    return rows
 
 
 def _name(data: Data) -> str:

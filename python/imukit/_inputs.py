@@ -28,13 +28,15 @@ def is_several(data: Any) -> bool:
 
 
 def open_record(data: Data, rate: float | str | None, columns: str | Sequence[str] | None,
-                log: Mapping[str, Any] | None = None, name: str = "the record") -> Any:
+                log: Mapping[str, Any] | None = None, name: str = "the record",
+                stamped: bool = False) -> Any:
     """The record of `data`.
 
     rate     sampling rate [Hz], or a text such as "200 Hz"
     columns  names of the columns, with units in brackets: "gyro_x [deg/s]"; without, SI
     log      options for reading a log
     name     in messages, where it is no file
+    stamped  columns with a rate and without times get a column of times
     """
     if is_path(data):
         return _core.open_log(data, log_options(rate, columns, log))
@@ -54,8 +56,12 @@ def open_record(data: Data, rate: float | str | None, columns: str | Sequence[st
         names = [columns] if isinstance(columns, str) else list(columns)
     if names is None:
         names = _names(_count(arrays))
-    seconds = 0.0 if rate is None else si("rate", rate, "Hz")
-    return _core.arrays(name, tuple(names), arrays, seconds)
+    hertz = 0.0 if rate is None else si("rate", rate, "Hz")
+    if stamped and hertz > 0 and "time" not in [title.partition("[")[0].strip() for title in names]:
+        arrays = arrays if isinstance(arrays, list) else _arrays.columns_of(arrays)
+        if len(arrays) == len(names) and arrays:
+            arrays, names = [_arrays.times(len(arrays[0]), hertz), *arrays], ["time [s]", *names]
+    return _core.arrays(name, tuple(names), arrays, hertz)
 
 
 def _axes(name: str, values: Any) -> list[tuple[str, Any]]:

@@ -75,7 +75,8 @@ class Log(Mapping[str, Any]):
                          for name, numbers in state["_columns"].items()}
 
     def _imukit_columns(self) -> tuple[list[str], list[Any]]:
-        names = [f"{name} [{unit}]" if unit else name for name, unit in self.units.items()]
+        names = [f"{name} [{unit}]" if unit and not name.endswith("]") else name
+                 for name, unit in self.units.items()]
         return names, list(self._columns.values())
 
 

@@ -43,6 +43,16 @@ class InFolder(command.SameAsCommand):
 
 
 class Plans(InFolder):
+    def test_programme_reaches_what_it_says(self):
+        plan = imukit.plan_calibration("ADIS16488", "sixposition", "accel.scale_factor 300 ppm")
+        log = imukit.simulate("ADIS16488", 100, plan.duration, seed=1,
+                              motion=imukit.Motion.parse(plan.programme))
+        result = imukit.calibrate(log, "sixposition")
+        for axis in "xyz":
+            name = f"accel.scale_factor.fixed.{axis}"
+            self.assertLess(plan.sigmas[name], 300e-6)
+            self.assertLess(result.estimates[name].sigma, 2 * plan.sigmas[name])
+
     def test_as_command(self):
         for procedure, want, more, words in (
                 ("multiposition", "accel.scale_factor 100 ppm, gyro.bias 1 mdeg/s", {}, ()),
@@ -185,46 +195,6 @@ TURNS = "imukit_motion: 1\nsteps: [hold 5 s, " + ", ".join(
 SPIN = ("imukit_motion: 1\nearth: no\nsteps: [hold 5 s, " + ", ".join(
     f"rotate z {angle} deg at {rate} deg/s, hold 3 s"
     for angle, rate in ((720, 90), (-720, 90), (720, 180), (-720, 180))) + "]\n")
-
-
-class Plans(InFolder):
-    def test_same(self):
-        for procedure, want, named, words in (
-                ("sixposition", "accel.scale_factor 300 ppm", {}, ()),
-                ("multiposition", None, {"rate": "20 Hz", "position": ("48.1 deg", "11.6 deg", 520)},
-                 ("--rate", "20Hz", "--position", "48.1 deg, 11.6 deg, 520 m")),
-                ("rate-table", "gyro.scale_factor 0.1 ppm", {}, ()),
-                ("thermal", None, {"soak": 300, "temperature_order": 2},
-                 ("--soak", "300s", "--temperature-order", 2))):
-            with self.subTest(procedure):
-                plan = imukit.plan_calibration("ADIS16488", procedure, want, **named)
-                wanted = ("--want", want) if want else ()
-                self.same(plan, "calibrate", "--plan", "ADIS16488", "-p", procedure, *wanted, *words)
-                self.assertEqual(plan.met, procedure != "rate-table")
-                again = pickle.loads(pickle.dumps(plan))
-                self.assertEqual((again.programme, again.sigmas, again.met),
-                                 (plan.programme, plan.sigmas, plan.met))
-
-    def test_programme_reaches_what_it_says(self):
-        plan = imukit.plan_calibration("ADIS16488", "sixposition", "accel.scale_factor 300 ppm")
-        log = imukit.simulate("ADIS16488", 100, plan.duration, seed=1,
-                              motion=imukit.Motion.parse(plan.programme))
-        result = imukit.calibrate(log, "sixposition")
-        for axis in "xyz":
-            name = f"accel.scale_factor.fixed.{axis}"
-            self.assertLess(plan.sigmas[name].sigma, 300e-6)
-            self.assertLess(result.estimates[name].sigma, 2 * plan.sigmas[name].sigma)
-
-    def test_wrong(self):
-        for procedure, named, words in (
-                ("magnetometer", {}, "needs no programme"), ("nothing", {}, "expected one of"),
-                ("sixposition", {"want": "accel.scale 3 ppm"}, "not known"),
-                ("sixposition", {"want": "accel.scale_factor 3"}, "unit"),
-                ("sixposition", {"rate": -1}, "rate"), ("thermal", {"soak": "1 m"}, "soak")):
-            with self.subTest(procedure, **named), self.assertRaisesRegex(Exception, words):
-                imukit.plan_calibration("ADIS16488", procedure, **named)
-        with self.assertRaisesRegex(imukit.Error, "noise"):
-            imukit.plan_calibration({"gyro": {}}, "sixposition")
 
 
 class Procedures(InFolder):

@@ -6,11 +6,11 @@ import pathlib
 import subprocess
 import tempfile
 import unittest
+from array import array
 
 from command import ALONE, COMMAND
 
 import imukit
-
 
 
 def unit():
@@ -20,6 +20,86 @@ def unit():
     model["accel.scale_factor.fixed"] = [1e-3, 2e-3, -1e-3]
     model["accel.range"] = 50.0
     return model
+
+
+class Written(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.log = imukit.simulate("tactical", rate=100, duration=2, seed=1)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def test_round_trip(self):
+        for ending in "csv", "csv.gz", "csv.zst", "npy", "npz", "mat", "h5", "bag", "mcap", "db3":
+            with self.subTest(ending):
+                path = self.path(f"log.{ending}")
+                self.assertEqual(imukit.write_log(path, self.log), 200)
+                back = imukit.read_log(path)
+                self.assertEqual(list(back), list(self.log))
+                for name in self.log:
+                    self.assertEqual(list(back[name]), list(self.log[name]))
+
+    def test_units_and_decimals(self):
+        first = pathlib.Path(self.path("first.csv"))
+        imukit.write_log(first, self.log, to_gyro_unit="deg/h", to_accel_unit="mg")
+        self.assertEqual(imukit.read_log(first).written_units["accel_z"], "mg")
+        second = self.path("second.csv")
+        imukit.write_log(second, first, decimals=3)
+        head, row = pathlib.Path(second).read_text(encoding="utf-8").splitlines()[:2]
+        self.assertIn("gyro_x [deg/h]", head)
+        self.assertTrue(all(len(x.partition(".")[2]) == 3 for x in row.split(",")), row)
+
+    def test_rate_becomes_times(self):
+        rows = memoryview(array("d", range(30))).cast("B").cast("d", (10, 3))
+        for data, names in (({"gyro [deg/s]": rows}, ["time", "gyro_x", "gyro_y", "gyro_z"]),
+                            (rows, ["time", "a [1]", "b [1]", "c [1]"]),
+                            ({"time": [0, 1, 3], "gyro_x": [1, 2, 3]}, ["time", "gyro_x"])):
+            columns = ("a", "b", "c") if data is rows else None
+            imukit.write_log(self.path("log.csv"), data, 4, columns=columns)
+            back = imukit.read_log(self.path("log.csv"), any_columns=True)
+            self.assertEqual(list(back), names)
+            if len(names) > 2:
+                self.assertEqual(list(back["time"]), [k / 4 for k in range(10)])
+        imukit.write_log(self.path("again.csv"), back)
+        self.assertEqual(list(imukit.read_log(self.path("again.csv"))["time"]), [0, 1, 3])
+
+    def test_increments(self):
+        log = imukit.simulate("tactical", rate=100, duration=1, increments=True)
+        imukit.write_log(self.path("log.csv"), log)
+        text = pathlib.Path(self.path("log.csv")).read_text(encoding="utf-8")
+        self.assertIn("dtheta_x [rad]", text.splitlines()[0])
+        self.assertEqual(float(text.splitlines()[9].split(",")[1]), log["dtheta_x"][8])
+
+    def test_epoch(self):
+        origin = 1_700_000_000
+        pathlib.Path(self.path("log.csv")).write_text(
+            "time [s],gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s]\n" + "".join(
+                f"{origin}.{k:02d},{k},1,2\n" for k in range(50)), encoding="utf-8")
+        log = imukit.read_log(self.path("log.csv"))
+        for data in log, self.path("log.csv"):
+            imukit.write_log(self.path("log.mcap"), data)
+            self.assertEqual(imukit.read_log(self.path("log.mcap")).time_origin, origin)
+
+    def test_wrong(self):
+        path = self.path("log.csv")
+        imukit.write_log(path, self.log)
+        before = pathlib.Path(path).read_bytes()
+        for error, words, target, more in (
+                (ValueError, "decimals", path, {"decimals": 18}),
+                (TypeError, "", path, {"decimals": 2.5}),
+                (imukit.Error, "to_gyro_unit.*angular rate", path, {"to_gyro_unit": "m"}),
+                (imukit.Error, "to_accel_unit", path, {"to_accel_unit": "quux"}),
+                (imukit.Error, "csv", self.path("log.xyz"), {}),
+                (imukit.FileError, "absent", self.path("absent/log.csv"), {}),
+                (ValueError, "file", "-", {}), (TypeError, "", 3, {}),
+                (imukit.Error, "cancelled", path, {"progress": lambda *_: False})):
+            with self.subTest(words, **more), self.assertRaisesRegex(error, words):
+                imukit.write_log(target, self.log, **more)
+        self.assertEqual(pathlib.Path(path).read_bytes(), before)
+        self.assertEqual(os.listdir(self.folder), ["log.csv"])
 
 
 class Compensated(unittest.TestCase):

@@ -175,9 +175,11 @@ static inline void odd_butterfly(size_t r, size_t lanes, const double *c, const 
             ei[l] = a[lanes + l];
             fr[l] = fi[l] = 0.0;
         }
+        size_t jk = 0; /* modulo r */
         for (size_t k = 1; k <= r / 2; k++) {
             const double *f = a + k * in, *g = a + (r - k) * in;
-            const double cosine = c[j * k % r], sine = d[j * k % r];
+            jk = jk + j < r ? jk + j : jk + j - r;
+            const double cosine = c[jk], sine = d[jk];
             for (size_t l = 0; l < lanes; l++) {
                 er[l] += cosine * (f[l] + g[l]);
                 ei[l] += cosine * (f[lanes + l] + g[lanes + l]);
