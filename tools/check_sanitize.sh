@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # The tests with the address, leak and undefined-behaviour sanitizers. Cases that reach no place in
-# the libraries and the command that the others do not reach are left out (tools/select_sanitized.py);
-# with --all, all are run.
+# the libraries and the command that the others do not reach, or few for their time, are left out
+# (tools/select_sanitized.py); with --all, all are run.
 set -eu
 cd "$(dirname "$0")/.."
 tools/sanitized_build.sh >/dev/null
