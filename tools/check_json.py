@@ -30,13 +30,7 @@ SLOW = re.compile(r"real_|identify_(runs_differ|devices_filtered|devices_two|lon
 
 # Keys that no invocation shows: their path in the schema, and why.
 UNSEEN = {
-    **{f"drift:result_results.monte_carlo.times.nees{key}": "a results file of runs with aids"
-       for key in ("", ".mean", ".degrees", ".lower", ".upper")},
     "identify:inputs_several.longest": "long logs at several rates with reading noise",
-    "identify:terms.integral_white_noise": "an uncounted column that is no sensor, with steps",
-    "identify:terms.velocity_white": "an accelerometer with white noise of the velocity",
-    "info:result.record.notes.code": "a log with stamps that are worth a note",
-    "info:result.record.notes.message": "the same",
 }
 
 

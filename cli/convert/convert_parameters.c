@@ -108,16 +108,6 @@ static void show_end_of(const char *file, imk_parameter_format format, imk_resul
     convert_show_file(file, name ? name : "model", result);
 }
 
-static void show_notes(const imk_parameter_notes *notes, imk_result *result)
-{
-    for (size_t i = 0; i < notes->count; i++) {
-        imk_result_object(result, NULL);
-        imk_result_text(result, "kind", notes->note[i].lost ? "lost" : "assumed");
-        imk_result_text(result, "text", notes->note[i].text);
-        imk_result_end(result);
-    }
-}
-
 static int read_source(const parameter_options *o, const imk_parameter_settings *settings,
                        const char *in, imk_model *model, imk_parameter_format *format,
                        imk_parameter_notes *notes)
@@ -166,12 +156,8 @@ int convert_show(const parameter_options *o, imk_parameter_format from, const ch
     imk_result_end(result);
     imk_result_object(result, "result");
     show_end_of(out, (imk_parameter_format)o->to, result);
-    imk_result_array(result, "notes");
-    for (int k = 0; notes && k < 2; k++) {
+    for (int k = 0; notes && k < 2; k++)
         tell(&notes[k]);
-        show_notes(&notes[k], result);
-    }
-    imk_result_end(result);
     imk_result_end(result);
     return show_end(result, &(show_options){.json = o->json, .quiet = true}, EXIT_DONE);
 }

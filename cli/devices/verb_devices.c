@@ -20,15 +20,20 @@ static const option devices_option_table[] = {
     {"json", OPTION_FLAG, offsetof(devices_options, json), .help = "print as JSON"},
 };
 
-/* The figures of the overview. */
+/* The figures of the overview, two of each sensor. */
 static const struct {
-    const char *title, *unit, *si;
-    size_t offset; /* of the term in a model */
+    const char *title, *unit;
+    const char *sensor, *key, *si; /* in JSON, as the model file calls them */
+    size_t offset;                 /* of the term in a model */
 } headlines[] = {
-    {"gyro N", "deg/sqrt(h)", "rad/sqrt(s)", offsetof(imk_model, gyro.noise.white)},
-    {"gyro B", "deg/h", "rad/s", offsetof(imk_model, gyro.noise.bias_instability)},
-    {"accel N", "m/s/sqrt(h)", "m/s/sqrt(s)", offsetof(imk_model, accel.noise.white)},
-    {"accel B", "ug", "m/s^2", offsetof(imk_model, accel.noise.bias_instability)},
+    {"gyro N", "deg/sqrt(h)", "gyro", "angle_random_walk", "rad/sqrt(s)",
+     offsetof(imk_model, gyro.noise.white)},
+    {"gyro B", "deg/h", "gyro", "bias_instability", "rad/s",
+     offsetof(imk_model, gyro.noise.bias_instability)},
+    {"accel N", "m/s/sqrt(h)", "accel", "velocity_random_walk", "m/s/sqrt(s)",
+     offsetof(imk_model, accel.noise.white)},
+    {"accel B", "ug", "accel", "bias_instability", "m/s^2",
+     offsetof(imk_model, accel.noise.bias_instability)},
 };
 enum { HEADLINES = sizeof headlines / sizeof headlines[0] };
 
@@ -128,6 +133,22 @@ static void show_sensitivities(const char *name, imk_result *result)
     }
 }
 
+static void show_figures_data(const imk_model *model, imk_result *result)
+{
+    imk_result_object(result, "figures");
+    for (size_t k = 0; k < HEADLINES; k++) {
+        if (k % 2 == 0)
+            imk_result_object(result, headlines[k].sensor);
+        if (headline(model, k) > 0)
+            imk_result_quantity(result, headlines[k].key, headline(model, k), headlines[k].si);
+        else
+            imk_result_null(result, headlines[k].key);
+        if (k % 2 == 1)
+            imk_result_end(result);
+    }
+    imk_result_end(result);
+}
+
 static void show_data(const subject *s, const imk_model *model, imk_result *result)
 {
     imk_result_object(result, NULL);
@@ -137,14 +158,7 @@ static void show_data(const subject *s, const imk_model *model, imk_result *resu
         imk_result_flag(result, "preset", s->device->is_preset);
         imk_result_text(result, "source", s->device->source);
         imk_result_text(result, "note", s->device->note);
-        imk_result_object(result, "figures");
-        for (size_t k = 0; k < HEADLINES; k++)
-            if (headline(model, k) > 0)
-                imk_result_quantity(result, headlines[k].title, headline(model, k),
-                                    headlines[k].si);
-            else
-                imk_result_null(result, headlines[k].title);
-        imk_result_end(result);
+        show_figures_data(model, result);
     }
     imk_show_build(imk_device_build_find(s->name), result);
     show_sensitivities_data(s->name, result);

@@ -77,6 +77,8 @@ static int look(const info_options *o, imk_log_reader *reader, imk_info_file *fi
     int code = -1;
     if (status == IMK_OK)
         (void)log_input_tell(path, &info->findings, IMK_OK, NULL);
+    if (info && o->json) /* the text has them */
+        log_input_note(path, &info->findings);
     if (info && info->rows_read > 0)
         code = show(o, info, file, path, status == IMK_OK);
     if (status != IMK_OK)

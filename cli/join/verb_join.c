@@ -183,16 +183,11 @@ static void show_data(const parts *p, const join_options *o, const imk_model *un
     }
     imk_result_text(result, "timing",
                     joined->timing_from >= 0 ? p->part[joined->timing_from].name : NULL);
-    imk_result_array(result, "notes");
-    for (size_t i = 0; i < joined->note_count; i++) {
+    imk_result_end(result);
+    for (size_t i = 0; o->json && i < joined->note_count; i++) {
         note_text(p, &joined->note[i], text, sizeof text);
-        imk_result_object(result, NULL);
-        imk_result_text(result, "code", code_of(joined->note[i].kind));
-        imk_result_text(result, "message", text);
-        imk_result_end(result);
+        command_note(code_of(joined->note[i].kind), "%s", text);
     }
-    imk_result_end(result);
-    imk_result_end(result);
 }
 
 static void show_sensor(const parts *p, const imk_model *unit, const imk_joined *joined, int kind,

@@ -112,6 +112,27 @@ void command_clean(char *text)
 static void fail(const char *code, const imk_error *error, const char *file, const char *format,
                  va_list arguments) __attribute__((format(printf, 4, 0)));
 
+/* The file of an error that names it in its field: the word of the command line of which the field
+ * is the shortened form, else the field. */
+static const char *file_of(const imk_error *error)
+{
+    if (error->status != IMK_ERROR_OPEN && error->status != IMK_ERROR_READ &&
+        error->status != IMK_ERROR_WRITE)
+        return NULL;
+    for (int i = 1; i < kept_count; i++) {
+        const char *word = kept_arguments[i], *value = strchr(word, '=');
+        char name[sizeof error->field];
+        if (strncmp(word, "--", 2) == 0)
+            word = value ? value + 1 : word;
+        else if (word[0] == '-' && word[1] != '\0')
+            word += 2; /* -oFILE */
+        imk_utf8_shorten(word, name, sizeof name);
+        if (strcmp(name, error->field) == 0)
+            return word;
+    }
+    return error->field;
+}
+
 static void fail(const char *code, const imk_error *error, const char *file, const char *format,
                  va_list arguments)
 {
@@ -122,7 +143,7 @@ static void fail(const char *code, const imk_error *error, const char *file, con
     char word[48];
     told_code(code, error, sizeof word, word);
     voice_say(VOICE_FAILURE, current_verb, word, text);
-    told_error(code, error, file, text);
+    told_error(code, error, file || !error ? file : file_of(error), text);
 }
 
 int command_failed(const char *format, ...)

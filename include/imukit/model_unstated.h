@@ -23,6 +23,7 @@ typedef struct imk_unstated_term {
     double typical;   /**< value typical of the class, or the bound of the evidence if it is
                            smaller [SI]; 0: the class has no such term */
     const char *unit; /**< unit in which it is read best: "deg/h" */
+    const char *si;   /**< SI unit: "rad/s" */
 } imk_unstated_term;
 
 enum { IMK_UNSTATED_MAX = 32 };

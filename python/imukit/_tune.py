@@ -74,8 +74,9 @@ class TuneResult(Result):
 
         correlation = gyro["correlation_time"]
         return FilterAnswer(
-            name, three(gyro, "white"), three(gyro, "random_walk"), gyro["bias_sigma"]["value"],
-            three(accel, "white"), three(accel, "random_walk"), accel["bias_sigma"]["value"],
+            name, three(gyro, "angle_random_walk"), three(gyro, "rate_random_walk"),
+            gyro["bias_sigma"]["value"], three(accel, "velocity_random_walk"),
+            three(accel, "acceleration_random_walk"), accel["bias_sigma"]["value"],
             correlation["value"] if correlation else None, three(gyro, "scale_factor_sigma"),
             three(accel, "scale_factor_sigma"), found["mean_nees"],
             _arrays.of_numbers(t["time"]["value"] for t in times),

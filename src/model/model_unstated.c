@@ -211,7 +211,8 @@ static void find(const imk_model *model, imk_grade grade, imk_unstated *unstated
         for (int i = 0; i < EXPECTED; i++) {
             if (!expected_terms[i].unit[sensor] || is_stated(model, sensor, &expected_terms[i]))
                 continue;
-            const char *key = field_at(expected_terms[i].offset)->path[sensor];
+            const imki_field *field = field_at(expected_terms[i].offset);
+            const char *key = field->path[sensor];
             unstated->term[unstated->count++] =
                 (imk_unstated_term){.sensor = sensor,
                                     .key = key,
@@ -219,7 +220,8 @@ static void find(const imk_model *model, imk_grade grade, imk_unstated *unstated
                                     .grade = found,
                                     .typical = fmin(typical(found, sensor, &expected_terms[i]),
                                                     bound_of(model, sensor, key)),
-                                    .unit = expected_terms[i].unit[sensor]};
+                                    .unit = expected_terms[i].unit[sensor],
+                                    .si = field->si[sensor]};
         }
     }
 }

@@ -97,6 +97,10 @@ static const struct message {
     {"cut_short", "the file ends in the middle of a row, message or block, or its last line has no "
                   "end and may be cut; what is whole, {0} row{0s}, is used; if the file is a copy, "
                   "copy it again"},
+    {"places:damaged", "{0} row{0s}, messages or blocks of the places read cannot be read and are "
+                       "left out; --full reads the whole log"},
+    {"places:cut_short", "the file ends in the middle of a row, message or block, or its last line "
+                         "has no end and may be cut; if the file is a copy, copy it again"},
     {"received", "{0?}the stamps of the first messages are 0, and of {0} later one{0s} they are "
                  "not; for all of them {?}{0!}the stamps of the messages are all 0; {?}the times "
                  "at which they were recorded are used, which have the jitter of their way"},

@@ -78,6 +78,45 @@ static void test_files(void **state)
 }
 
 /* What was computed is there although the picture is not. */
+/* An output that cannot be written is named, in full where the message shortens it. */
+static void test_outputs(void **state)
+{
+    (void)state;
+    char line[1200], name[400];
+    memset(name, 'n', 200);
+    snprintf(name + 200, sizeof name - 200, "/log.csv");
+    snprintf(line, sizeof line, "$I simulate AHRS -r 10Hz -d 1s --json -o%s", "/dev/full");
+    get(line, 1);
+    assert_string_equal(error_of("code"), "write");
+    assert_string_equal(error_of("file"), "/dev/full");
+    const char *const ways[] = {"-o %s", "-o%s", "--output=%s", "--output %s"};
+    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+        char option[420];
+        snprintf(option, sizeof option, ways[i], name);
+        snprintf(line, sizeof line, "$I simulate AHRS -r 10Hz -d 1s --json %s", option);
+        get(line, 1);
+        assert_string_equal(error_of("code"), "open");
+        assert_string_equal(error_of("file"), name);
+    }
+    get("$I join AHRS tactical --gyro AHRS --accel tactical --json -o nowhere/unit.yaml", 1);
+    assert_string_equal(error_of("file"), "nowhere/unit.yaml");
+}
+
+/* What was left out of a log is a finding with the same code in every verb. */
+static void test_damage(void **state)
+{
+    (void)state;
+    put("damaged.csv", "time [s],gyro_x [rad/s]\n0,1\n1,x\n2,2\n3,1\n4,3\n5,1\n6,2\n7,1\n8,2\n"
+                       "9,4\n10,1\n11,2\n");
+    const char *const lines[] = {"$I info damaged.csv --json", "$I allan damaged.csv --json"};
+    for (int i = 0; i < 2; i++) {
+        get(lines[i], 0);
+        assert_int_equal(findings_of("warning", "damaged"), 1);
+    }
+    get("$I info damaged.csv --full --after 20s --json", 1);
+    assert_string_equal(error_of("file"), "damaged.csv");
+}
+
 static void test_result_and_error(void **state)
 {
     (void)state;
@@ -142,6 +181,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_usage),
         cmocka_unit_test(test_files),
+        cmocka_unit_test(test_outputs),
+        cmocka_unit_test(test_damage),
         cmocka_unit_test(test_result_and_error),
         cmocka_unit_test(test_findings),
         cmocka_unit_test(test_written),

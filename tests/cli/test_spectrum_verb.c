@@ -63,8 +63,10 @@ static void test_values(void **state)
                     5 * number(found, "amplitude_sigma"));
         json_t *white = json_object_get(
             json_object_get(json_object_get(channel, "parameters"), "terms"), "angle_random_walk");
-        CHECK_CLOSE(number(white, "value"), 0.3 * 0.017453292519943295 / 60,
-                    5 * number(white, "sigma"));
+        assert_string_equal(json_string_value(json_object_get(white, "unit")), "rad/sqrt(s)");
+        CHECK_CLOSE(json_number_value(json_object_get(white, "value")),
+                    0.3 * 0.017453292519943295 / 60,
+                    5 * json_number_value(json_object_get(white, "sigma")));
         json_decref(root);
     }
     json_t *two = spectrum_json("$I spectrum line.csv --json");

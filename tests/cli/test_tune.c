@@ -63,12 +63,15 @@ static void test_data(void **state)
     json_t *document;
     json_t *answers = answers_of("$I tune unit.yaml turn.yaml --json -n 5" SMALL, &document);
     json_t *stated = json_object_get(answers, "data_sheet"), *fit = json_object_get(answers, "fit");
-    CHECK_RELATIVE(number(stated, "gyro", "white"), 0.3 / 60 * 3.14159265358979323846 / 180, 1e-9);
-    CHECK_RELATIVE(number(stated, "accel", "white"), 1e-3, 1e-9);
-    CHECK_RELATIVE(number(json_object_get(answers, "data_sheet_x10"), "accel", "white"), 1e-2,
-                   1e-9);
+    CHECK_RELATIVE(number(stated, "gyro", "angle_random_walk"),
+                   0.3 / 60 * 3.14159265358979323846 / 180, 1e-9);
+    CHECK_RELATIVE(number(stated, "accel", "velocity_random_walk"), 1e-3, 1e-9);
+    CHECK_RELATIVE(
+        number(json_object_get(answers, "data_sheet_x10"), "accel", "velocity_random_walk"), 1e-2,
+        1e-9);
     /* What scale factors and misalignments add grows with time: it is no white noise. */
-    assert_true(number(fit, "gyro", "random_walk") > number(stated, "gyro", "random_walk"));
+    assert_true(number(fit, "gyro", "rate_random_walk") >
+                number(stated, "gyro", "rate_random_walk"));
     json_t *times = json_object_get(fit, "times");
     assert_int_equal(json_array_size(times), 7); /* 0.04 of 0.032 s, 0.06, 0.1 … 1 s */
     json_t *last = json_array_get(times, 6), *runs = json_object_get(last, "runs");
@@ -95,7 +98,7 @@ static void test_files(void **state)
     const char *at = strstr(text, "\ngyroscope_noise_density: ");
     assert_non_null(at);
     CHECK_RELATIVE(strtod(strchr(at, ':') + 1, NULL),
-                   number(json_object_get(answers, "fit"), "gyro", "white"), 1e-9);
+                   number(json_object_get(answers, "fit"), "gyro", "angle_random_walk"), 1e-9);
     check_contains(text, "update_rate: 50", "imu.yaml");
     json_decref(document);
     assert_int_equal(run("$I tune unit.yaml turn.yaml -o filter.yaml" SMALL), 0);

@@ -270,6 +270,15 @@ sed 's/reading/reding/' levels.csv >wrong_table.csv
 awk 'BEGIN { print "reference [g],reading_x [g],reading_y [mg]"; for (k = 0; k < 40; k++) {
     x = (k % 8 - 3.5) / 4; printf "%g,%.6f,%.4f\n", x, 1.002 * x + 1e-4 * (k % 3), 1001 * x + 0.2 * (k % 5) } }' >accel_table.csv
 
+# ---- what only few results show --------------------------------------------------------------------
+$IMUKIT drift quiet.yaml --motion turns.yaml --rate 10Hz --monte-carlo 4 --aid "gnss position 1 m at 1 Hz until 30 s" -o aided.h5 >/dev/null
+cat >uncounted.yaml <<'END'
+imukit: 1
+accel: {noise: {density: two-sided, velocity_white: 1e-3 m/s/sqrt(Hz), velocity_random_walk: 1e-3 m/s/sqrt(s)}}
+END
+$IMUKIT simulate uncounted.yaml --rate 50Hz --duration 40s --no-earth --decimals 12 | cut -d, -f1,2 >uncounted.csv
+sed '1s/.*/time [s],depth [m]/' uncounted.csv >depth.csv
+
 # ---- what only few verbs read ----------------------------------------------------------------------
 $IMUKIT simulate unit.yaml --motion lap.yaml --rate 50Hz --seed 2 --aid "position 1 1 2 m, velocity 0.05 m/s" --aid-output lap_aids.csv -o lap_again.csv
 $IMUKIT convert rest.csv rest.mcap

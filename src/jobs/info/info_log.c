@@ -242,6 +242,21 @@ static imk_status read_places(look *l, imk_error *error)
     return status == IMK_OK && !l->ended ? read_end(l, error) : status;
 }
 
+/* Damage of a record of which some places were read: their counts, whose rows have no number. */
+static void tell_places(look *l)
+{
+    imk_info_log *info = l->info;
+    if (info->damaged > 0)
+        imki_find(&info->findings, IMK_FINDING_WARNING, "places:damaged", NULL,
+                  IMKI_NUMBERS((double)info->damaged));
+    if (info->cut_short)
+        imki_find(&info->findings, IMK_FINDING_WARNING, "places:cut_short", NULL, 0, NULL);
+    if (info->other_frames > 0)
+        imki_find(&info->findings, IMK_FINDING_WARNING, "frames", info->frames,
+                  IMKI_NUMBERS((double)info->other_frames, (double)info->rows_read));
+    imki_tell_manner(l->source, &info->findings);
+}
+
 static void estimate_rows(look *l)
 {
     imk_info_log *info = l->info;
@@ -299,7 +314,10 @@ static imk_status run(look *l, imk_error *error)
     info->jitter = l->steps > 0 ? sqrt(l->jitter_squares / l->steps) : 0;
     estimate_rows(l);
     info->stopped = status != IMK_OK;
-    imki_tell_manner(l->source, &info->findings);
+    if (info->whole)
+        imki_tell_damage(l->source, &info->findings);
+    else
+        tell_places(l);
     imki_tell_unused(l->source->column_count, l->source->columns, IMK_KINDS, &info->findings);
     imki_info_rows_end(&l->rows, l->scratch);
     find_stated(l);

@@ -429,21 +429,6 @@ static void show_motion(const imk_info_log *info, imk_result *result)
                         "--accel-range, or --gyro-scale and --accel-scale.");
 }
 
-static void notes_data(const imk_info_log *info, imk_result *result)
-{
-    char text[900];
-    imk_result_array(result, "notes");
-    for (size_t k = 0; k < info->findings.count; k++)
-        if (info->findings.item[k].level == IMK_FINDING_NOTE) {
-            imk_finding_text(&info->findings.item[k], text, sizeof text);
-            imk_result_object(result, NULL);
-            imk_result_text(result, "code", imk_finding_code(&info->findings.item[k]));
-            imk_result_text(result, "message", text);
-            imk_result_end(result);
-        }
-    imk_result_end(result);
-}
-
 static void show_data(const imk_info_log *info, const imk_info_file *file, const char *name,
                       const char *chosen, const char *next, imk_result *result)
 {
@@ -463,7 +448,6 @@ static void show_data(const imk_info_log *info, const imk_info_file *file, const
         imk_result_text(result, "motion", motion_keys[info->motion]);
         imk_result_number(result, "resting", info->resting);
         imk_result_count(result, "attitudes", (long long)info->attitudes);
-        notes_data(info, result);
         imk_result_array(result, "columns");
         for (size_t i = 0; i < info->channel_count; i++)
             channel_data(&info->channel[i], result);

@@ -32,7 +32,7 @@ imki_words imki_duration(double seconds);
 /* The channels of a kind. @return how many */
 size_t imki_members(const imk_even_record *record, imk_channel_kind kind, size_t *member);
 
-/* {"present", "value", "sigma", "lower", "upper"} of an estimate. */
+/* {"present", "value", "sigma", "lower", "upper", "unit"} of an estimate. */
 void imki_show_estimate(imk_result *result, const char *key, const imk_estimate *estimate,
                         double scale, const char *unit);
 

@@ -73,10 +73,11 @@ void imki_show_estimate(imk_result *result, const char *key, const imk_estimate 
 {
     imk_result_object(result, key);
     imk_result_flag(result, "present", estimate->present);
-    imk_result_quantity(result, "value", estimate->value / scale, unit);
-    imk_result_quantity(result, "sigma", estimate->sigma / scale, unit);
-    imk_result_quantity(result, "lower", estimate->lower / scale, unit);
-    imk_result_quantity(result, "upper", estimate->upper / scale, unit);
+    imk_result_number(result, "value", estimate->value / scale);
+    imk_result_number(result, "sigma", estimate->sigma / scale);
+    imk_result_number(result, "lower", estimate->lower / scale);
+    imk_result_number(result, "upper", estimate->upper / scale);
+    imk_result_text(result, "unit", unit);
     imk_result_end(result);
 }
 

@@ -27,8 +27,7 @@ static void show_term(const imk_unstated_term *term, imk_result *result)
     imk_result_text(result, "key", term->key);
     imk_result_text(result, "text", term->text);
     imk_result_text(result, "class", class_name(term->grade));
-    imk_result_quantity(result, "typical", term->typical / imk_unit_of(term->unit).scale,
-                        term->unit);
+    imk_result_quantity(result, "typical", term->typical, term->si);
 }
 
 void imki_show_missing_data(size_t count, const imk_drift_missing *missing, imk_result *result)

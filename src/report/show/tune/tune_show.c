@@ -14,8 +14,14 @@ const imki_tune_unit imki_tune_units[4] = {{"gyro N", "deg/sqrt(h)"},
                                            {"accel K", "ug/sqrt(h)"}};
 
 static const char *const sensors[2] = {"gyro", "accel"};
-static const char *const si[2][2] = {{"rad/s/sqrt(Hz)", "rad/s/sqrt(s)"},
-                                     {"m/s^2/sqrt(Hz)", "m/s^2/sqrt(s)"}};
+/* N and K as the model file calls them. */
+static const struct {
+    const char *key, *unused, *si;
+} terms[2][2] = {
+    {{"angle_random_walk", "angle_random_walk_unused", "rad/sqrt(s)"},
+     {"rate_random_walk", "rate_random_walk_unused", "rad/s/sqrt(s)"}},
+    {{"velocity_random_walk", "velocity_random_walk_unused", "m/s/sqrt(s)"},
+     {"acceleration_random_walk", "acceleration_random_walk_unused", "m/s^2/sqrt(s)"}}};
 static const char *const bias_unit[2] = {"rad/s", "m/s^2"};
 static const char *const keys[IMK_FILTER_ANSWERS] = {
     "data_sheet", "data_sheet_x10", "fit", "safe", "fit_scale_factors", "safe_scale_factors"};
@@ -67,8 +73,8 @@ static void show_answer(const imk_tune_model *r, int kind, imk_result *result)
         return;
     for (int sensor = 0; sensor < 2; sensor++) {
         imk_result_object(result, sensors[sensor]);
-        show_three("white", a->parameters.white[sensor], si[sensor][0], result);
-        show_three("random_walk", a->parameters.walk[sensor], si[sensor][1], result);
+        show_three(terms[sensor][0].key, a->parameters.white[sensor], terms[sensor][0].si, result);
+        show_three(terms[sensor][1].key, a->parameters.walk[sensor], terms[sensor][1].si, result);
         if (a->parameters.correlation_time > 0.0)
             imk_result_quantity(result, "correlation_time", a->parameters.correlation_time, "s");
         else
@@ -76,8 +82,8 @@ static void show_answer(const imk_tune_model *r, int kind, imk_result *result)
         imk_result_quantity(result, "bias_sigma", a->parameters.bias_sigma[sensor],
                             bias_unit[sensor]);
         show_three("scale_factor_sigma", a->parameters.scale_factor[sensor], "1", result);
-        imk_result_flag(result, "white_unused", a->unused[sensor][0]);
-        imk_result_flag(result, "random_walk_unused", a->unused[sensor][1]);
+        for (int term = 0; term < 2; term++)
+            imk_result_flag(result, terms[sensor][term].unused, a->unused[sensor][term]);
         imk_result_end(result);
     }
     imk_result_number(result, "mean_nees", a->mean_nees);
