@@ -423,8 +423,8 @@ static void test_shared_stamps(void **state)
     check_contains(out, "\nNote: one stamp of the time column is that of 2 rows", "note");
     assert_null(strstr(out, "jitter"));
     assert_int_equal(run("$I info log.csv --json"), 0);
-    check_contains(out, "\"notes\": [", "notes");
-    check_contains(out, "\"code\": \"coarse_stamps\"", "notes");
+    check_contains(out, "\"findings\": [", "findings");
+    check_contains(out, "\"code\": \"coarse_stamps\"", "findings");
     sweep();
 }
 
