@@ -142,7 +142,7 @@ static bool check_array(const mxArray *array)
                                    what);
 }
 
-char *gateway_write_array(const mxArray *array, size_t named)
+char *gateway_write_array(const char *name, const mxArray *array, size_t named)
 {
     const size_t rows = mxGetM(array), columns = mxGetN(array);
     if (!check_array(array))
@@ -153,7 +153,7 @@ char *gateway_write_array(const mxArray *array, size_t named)
                              columns, columns == 1 ? "" : "s", named, IMK_LOG_COLUMNS_MAX);
         return NULL;
     }
-    char *path = gateway_file("array.npy");
+    char *path = gateway_file(name);
     FILE *file = path ? fopen(path, "wb") : NULL;
     const double *value = mxGetPr(array);
     char head[118];
