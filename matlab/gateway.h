@@ -64,6 +64,8 @@ char *gateway_write_array(const char *name, const mxArray *array, size_t named);
 char *gateway_write_text(const char *name, const char *text);
 /* Take the temporary folder out of a text, which shall speak of "array.npy". */
 void gateway_without_folder(char *text);
+/* Is there room for so many bytes in the temporary folder? @return false: refused */
+bool gateway_has_room(double bytes);
 void gateway_remove_files(void);
 
 /* JSON as the struct that jsondecode() makes of it (gateway_value.c). */

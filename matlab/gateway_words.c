@@ -162,6 +162,10 @@ static bool add_arrays(const mxArray *arrays, const mxArray *rate, const char *n
     char *list = gateway_column_names(names, &columns);
     bool added = columns > 0 || gateway_refuse("'columns' names no column");
     const size_t count = mxIsCell(arrays) ? mxGetNumberOfElements(arrays) : 1;
+    const size_t most = (size_t)gateway_now()->verb->operands_maximum;
+    if (added && count > most)
+        added = gateway_refuse("the cell array has %zu matrices: imukit_%s takes up to %zu", count,
+                               gateway_now()->verb->name, most);
     for (size_t i = 0; added && i < count; i++) {
         const mxArray *array = mxIsCell(arrays) ? mxGetCell(arrays, i) : arrays;
         if (!is_array(array))
@@ -402,6 +406,36 @@ static bool take_option(const mxArray *given, const mxArray *value)
     return take_value(o, value);
 }
 
+/* The number of an option that was taken [SI]; 0: it is not there, or no such number. */
+static double taken_number(const char *start, const char *unit)
+{
+    const gateway_call *call = gateway_now();
+    const size_t length = strlen(start);
+    double value = 0, sigma;
+    size_t count;
+    for (int i = 2; i < call->count; i++)
+        if (strncmp(call->word[i], start, length) == 0) {
+            const char *text = call->word[i] + length;
+            if (imk_quantity_parse(text, text + strlen(text), imk_unit_of(unit).dimension, 1,
+                                   &value, &sigma, &count, NULL, NULL) != IMK_OK)
+                value = 0;
+        }
+    return value;
+}
+
+/* The log that a simulation writes: in the temporary folder, if there is room for the time and the
+ * three columns that every log has at least. */
+static bool take_log(void)
+{
+    const double rows = taken_number("--rate=", "Hz") * taken_number("--duration=", "s");
+    if (!gateway_has_room(rows * 4 * sizeof(double)))
+        return false;
+    char *path = gateway_file(GATEWAY_LOG);
+    const bool added = path && add_option("output", path);
+    free(path);
+    return added;
+}
+
 bool gateway_take(int count, const mxArray *const *arguments)
 {
     gateway_call *call = gateway_now();
@@ -416,10 +450,5 @@ bool gateway_take(int count, const mxArray *const *arguments)
             return false;
     if (!add_option("json", NULL))
         return false;
-    if (!call->log_due)
-        return true;
-    char *path = gateway_file(GATEWAY_LOG);
-    const bool added = path && add_option("output", path);
-    free(path);
-    return added;
+    return !call->log_due || take_log();
 }
