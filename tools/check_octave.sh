@@ -28,7 +28,7 @@ for _ in $(seq 200); do
 done
 [ -n "$(ls "$out/tmp")" ] || { echo "no simulation to interrupt"; exit 1; }
 kill -INT $!
-! wait $!
+if wait $!; then echo "the simulation ended before Ctrl-C"; exit 1; fi
 [ -z "$(ls -A "$out/tmp")" ] || { echo "Ctrl-C leaves $(ls "$out/tmp")"; exit 1; }
 
 # The page has a folder of its own, which looks like the root of the repository.
