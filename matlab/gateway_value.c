@@ -3,8 +3,8 @@
  * columns; of columns of one length, matrices with a row for each; of objects of the same keys,
  * struct arrays; other arrays, cells. null is [], and NaN among numbers.
  *
- * Other than with jsondecode(), the array `points` of a curve is one struct of columns: thousands
- * of structs take Octave minutes to make and to free.
+ * Other than with jsondecode(), the array `points` of a curve is one struct of columns, as a script
+ * uses it.
  *
  * The text is that of imk_result_to_json(), so nothing in it is unexpected. jsondecode() itself is
  * not used because that of Octave 7 does not round numbers correctly. */

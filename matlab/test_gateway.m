@@ -151,7 +151,7 @@ function test_values ()
   assert (isempty (evaluation.findings) || isstruct (evaluation.findings));
 end
 
-% Columns take no longer than the computation: a struct for each point took minutes for as many.
+% The time to read a result grows with its length, not with its square, which took minutes here.
 function test_many_points ()
   tic;
   curve = imukit_allan (sin ((1:20000)'.^2), 100, 'columns', 'gyro_x', 'tau', 'all');
