@@ -30,6 +30,7 @@ typedef struct gateway_call {
     char folder[256];              /* of temporary files; "": there is none */
     bool log_due;                  /* the verb writes a log, which is returned */
     bool named_columns;            /* of an array */
+    bool rate_taken;               /* behind an array */
     size_t warning_count;
     gateway_warning warning[GATEWAY_WARNINGS_MAX];
     char *json, *model;                             /* what the verb made; NULL: nothing */
@@ -57,12 +58,14 @@ char *gateway_file(const char *name);
 /* Names of columns, separated by commas, with a unit for each sensor and three for "gyro".
  * @param count  how many they are. @return memory of the caller */
 char *gateway_column_names(const char *names, size_t *count);
-/* An array of so many named columns as a log. @return path, or NULL: refused */
-char *gateway_write_array(const mxArray *array, size_t named);
+/* An array of so many named columns as a log of this name. @return path, or NULL: refused */
+char *gateway_write_array(const char *name, const mxArray *array, size_t named);
 /* A text as a file. @return path, or NULL */
 char *gateway_write_text(const char *name, const char *text);
 /* Take the temporary folder out of a text, which shall speak of "array.npy". */
 void gateway_without_folder(char *text);
+/* Is there room for so many bytes in the temporary folder? @return false: refused */
+bool gateway_has_room(double bytes);
 void gateway_remove_files(void);
 
 /* JSON as the struct that jsondecode() makes of it (gateway_value.c). */

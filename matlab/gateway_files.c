@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 enum { NAME_SIZE = 160 };
@@ -33,6 +34,20 @@ char *gateway_file(const char *name)
     }
     snprintf(path, sizeof path, "%s/%s", call->folder, name);
     return gateway_copy(path);
+}
+
+bool gateway_has_room(double bytes)
+{
+    struct statvfs about;
+    char *path = gateway_file("");
+    const bool known = path && statvfs(path, &about) == 0;
+    const double room = known ? (double)about.f_bavail * (double)about.f_frsize : bytes;
+    free(path);
+    return bytes <= room ||
+           gateway_refuse(
+               "the log has %.3g GB or more, and does not fit into the temporary "
+               "folder, which has %.3g GB: make it shorter, or set TMPDIR to a folder with room",
+               bytes / 1e9, room / 1e9);
 }
 
 void gateway_remove_files(void)
@@ -130,19 +145,26 @@ char *gateway_column_names(const char *names, size_t *count)
 
 static bool check_array(const mxArray *array)
 {
-    const char *what = !mxIsDouble(array)                    ? mxGetClassName(array)
-                       : mxIsComplex(array)                  ? "complex"
-                       : mxIsSparse(array)                   ? "sparse"
-                       : mxIsEmpty(array)                    ? "empty"
-                       : mxGetNumberOfDimensions(array) != 2 ? "an array of more dimensions"
-                                                             : NULL;
+    const char *what = NULL, *remedy = "";
+    if (mxIsSparse(array)) {
+        what = "sparse";
+        remedy = "; full(x) converts them";
+    } else if (!mxIsDouble(array)) {
+        what = mxGetClassName(array);
+        remedy = "; double(x) converts them";
+    } else if (mxIsComplex(array)) {
+        what = "complex";
+    } else if (mxIsEmpty(array)) {
+        what = "empty";
+    } else if (mxGetNumberOfDimensions(array) != 2) {
+        what = "an array of more dimensions";
+    }
     return !what || gateway_refuse("the readings are %s: expected a real matrix of class double, a "
-                                   "row for each sample, a column for each channel; double(x) "
-                                   "converts numbers of other classes",
-                                   what);
+                                   "row for each sample, a column for each channel%s",
+                                   what, remedy);
 }
 
-char *gateway_write_array(const mxArray *array, size_t named)
+char *gateway_write_array(const char *name, const mxArray *array, size_t named)
 {
     const size_t rows = mxGetM(array), columns = mxGetN(array);
     if (!check_array(array))
@@ -153,7 +175,7 @@ char *gateway_write_array(const mxArray *array, size_t named)
                              columns, columns == 1 ? "" : "s", named, IMK_LOG_COLUMNS_MAX);
         return NULL;
     }
-    char *path = gateway_file("array.npy");
+    char *path = gateway_file(name);
     FILE *file = path ? fopen(path, "wb") : NULL;
     const double *value = mxGetPr(array);
     char head[118];

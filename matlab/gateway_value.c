@@ -3,6 +3,9 @@
  * columns; of columns of one length, matrices with a row for each; of objects of the same keys,
  * struct arrays; other arrays, cells. null is [], and NaN among numbers.
  *
+ * Other than with jsondecode(), the array `points` of a curve is one struct of columns, as a script
+ * uses it.
+ *
  * The text is that of imk_result_to_json(), so nothing in it is unexpected. jsondecode() itself is
  * not used because that of Octave 7 does not round numbers correctly. */
 #include "gateway.h"
@@ -54,8 +57,10 @@ static void *more(void *array, size_t count, size_t size)
 static char *read_text(const char **at)
 {
     static const char letters[] = "bfnrt", meant[] = "\b\f\n\r\t";
-    const char *c = *at + 1;
-    char *text = mxMalloc(strlen(*at)), *end = text;
+    const char *c = *at + 1, *close = c;
+    for (; *close != '"'; close++)
+        close += *close == '\\';
+    char *text = mxMalloc((size_t)(close - c) + 1), *end = text;
     for (; *c != '"'; c++) {
         const char *letter = *c == '\\' ? strchr(letters, c[1]) : NULL;
         if (*c != '\\') {
@@ -71,6 +76,14 @@ static char *read_text(const char **at)
     *end = '\0';
     *at = c + 1;
     return text;
+}
+
+static mxArray *read_string(const char **at)
+{
+    char *text = read_text(at);
+    mxArray *string = mxCreateString(text);
+    mxFree(text);
+    return string;
 }
 
 /* A number, or null as NaN. */
@@ -106,6 +119,100 @@ static mxArray *column(const double *number, size_t count)
     return array;
 }
 
+/* A key and its colon. */
+static void read_key(const char **at, char name[NAME_SIZE])
+{
+    skip(at);
+    char *text = read_text(at);
+    name_field(text, name);
+    mxFree(text);
+    (void)pass(at, ':');
+}
+
+/* ---- points of a curve ----------------------------------------------------------------------- */
+
+enum { TABLE_COLUMNS_MAX = 16 };
+
+/* A member of all points: numbers, which may have a unit, or texts. */
+typedef struct table_column {
+    char name[NAME_SIZE];
+    double *number;
+    mxArray **text; /* NULL: numbers */
+    mxArray *unit;  /* NULL: none */
+} table_column;
+
+static void read_cell(const char **at, size_t row, table_column *c)
+{
+    char name[NAME_SIZE];
+    skip(at);
+    if (**at == '"') {
+        c->text = more(c->text, row, sizeof(mxArray *));
+        c->text[row] = read_string(at);
+        return;
+    }
+    const bool quantity = pass(at, '{');
+    c->number = more(c->number, row, sizeof *c->number);
+    if (quantity)
+        read_key(at, name);
+    (void)read_number(at, &c->number[row]);
+    if (!quantity)
+        return;
+    (void)pass(at, ',');
+    read_key(at, name);
+    skip(at);
+    mxArray *unit = read_string(at); /* the same for all points */
+    if (c->unit)
+        mxDestroyArray(unit);
+    else
+        c->unit = unit;
+    (void)pass(at, '}');
+}
+
+static void set_field(mxArray *array, const char *name, mxArray *value)
+{
+    mxSetFieldByNumber(array, 0, mxAddField(array, name), value);
+}
+
+/* The columns of `rows` points as a struct with a field for each, and their units in `units`. */
+static mxArray *make_table(size_t rows, int count, const table_column *c)
+{
+    mxArray *table = mxCreateStructMatrix(1, 1, 0, NULL);
+    mxArray *units = mxCreateStructMatrix(1, 1, 0, NULL);
+    for (int i = 0; i < count; i++) {
+        mxArray *value = c[i].text ? mxCreateCellMatrix(rows, 1) : column(c[i].number, rows);
+        for (size_t k = 0; c[i].text && k < rows; k++)
+            mxSetCell(value, k, c[i].text[k]);
+        set_field(table, c[i].name, value);
+        if (c[i].unit)
+            set_field(units, c[i].name, c[i].unit);
+    }
+    set_field(table, "units", units);
+    return table;
+}
+
+/* @return NULL: it is no array of objects, and *at has not moved */
+static mxArray *read_points(const char **at)
+{
+    const char *c = *at;
+    table_column columns[TABLE_COLUMNS_MAX] = {{.number = NULL}};
+    int count = 0;
+    size_t rows = 0;
+    if (!pass(&c, '[') || !pass(&c, '{'))
+        return NULL;
+    do {
+        count = 0;
+        do {
+            read_key(&c, columns[count].name);
+            read_cell(&c, rows, &columns[count++]);
+        } while (pass(&c, ','));
+        (void)pass(&c, '}');
+        rows++;
+    } while (pass(&c, ',') && pass(&c, '{'));
+    (void)pass(&c, ']');
+    *at = c;
+    return make_table(rows, count, columns);
+}
+
 /* ---- objects and arrays ---------------------------------------------------------------------- */
 
 static void set_members(mxArray *array, size_t index, const node *n)
@@ -137,13 +244,15 @@ static node read_object(const char **at)
     if (pass(at, '}'))
         return n;
     do {
-        skip(at);
         n.name = more(n.name, (size_t)n.count, sizeof *n.name);
         n.member = more(n.member, (size_t)n.count, sizeof(mxArray *));
-        name_field(read_text(at), n.name[n.count]);
-        (void)pass(at, ':');
-        const node member = read_node(at);
-        n.member[n.count++] = value_of(&member);
+        read_key(at, n.name[n.count]);
+        mxArray *table = strcmp(n.name[n.count], "points") == 0 ? read_points(at) : NULL;
+        if (!table) {
+            const node member = read_node(at);
+            table = value_of(&member);
+        }
+        n.member[n.count++] = table;
     } while (pass(at, ','));
     (void)pass(at, '}');
     return n;
@@ -243,7 +352,7 @@ static node read_node(const char **at)
     if (pass(at, '['))
         n.value = read_array(at);
     else if (**at == '"')
-        n.value = mxCreateString(read_text(at));
+        n.value = read_string(at);
     else if (strncmp(*at, "null", 4) == 0)
         n.value = mxCreateDoubleMatrix(0, 0, mxREAL);
     else if (**at == 't' || **at == 'f')

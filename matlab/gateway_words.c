@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { OPTIONS_MAX = 128 };
+
 static bool add_word(char *word)
 {
     gateway_call *call = gateway_now();
@@ -99,7 +101,10 @@ static bool take_operand(const mxArray *value, size_t number)
                          "text of a model file, or a result of imukit_identify or "
                          "imukit_calibrate with its field model")
                    : gateway_refuse("expected a log: the name of a file, or a matrix of readings "
-                                    "and its sampling rate");
+                                    "and its sampling rate; this is %s",
+                                    mxIsChar(value) ? mxIsEmpty(value) ? "an empty text"
+                                                                       : "a text of several rows"
+                                                    : mxGetClassName(value));
     if (strcmp(text, "-") == 0 || strncmp(text, "/dev/std", 8) == 0)
         return gateway_refuse("%s is standard input, which belongs to the prompt: name a file",
                               text);
@@ -110,12 +115,18 @@ static bool take_operand(const mxArray *value, size_t number)
     return add_word(path);
 }
 
+static bool is_array(const mxArray *value)
+{
+    return value && (mxIsNumeric(value) || mxIsLogical(value));
+}
+
 /* The sampling rate behind an array; [] where there is a column time. */
 static bool take_rate(const mxArray *value)
 {
     char text[48];
     if (mxIsDouble(value) && mxIsEmpty(value))
         return true;
+    gateway_now()->rate_taken = true;
     const bool number = mxIsNumeric(value) && !mxIsComplex(value) &&
                         mxGetNumberOfElements(value) == 1 && mxGetScalar(value) > 0 &&
                         isfinite(mxGetScalar(value));
@@ -134,21 +145,44 @@ static const mxArray *find_columns(int count, const mxArray *const *arguments)
     return NULL;
 }
 
-/* An array, its rate and its columns. */
-static bool add_array(const mxArray *array, const mxArray *rate, const char *names)
+/* "array.npy", or "array-2.npy" of the second of a cell array. */
+static bool add_array(const mxArray *array, size_t number, size_t columns)
 {
-    size_t count = 0;
-    char *list = gateway_column_names(names, &count);
-    char *path = count > 0 ? gateway_write_array(array, count) : NULL;
-    if (count == 0)
-        (void)gateway_refuse("'columns' names no column");
+    char name[32] = "array.npy";
+    if (number > 0)
+        snprintf(name, sizeof name, "array-%zu.npy", number);
+    char *path = gateway_write_array(name, array, columns);
+    return path && add_word(path);
+}
+
+/* An array or a cell array of them, their rate and their columns. */
+static bool add_arrays(const mxArray *arrays, const mxArray *rate, const char *names)
+{
+    size_t columns = 0;
+    char *list = gateway_column_names(names, &columns);
+    bool added = columns > 0 || gateway_refuse("'columns' names no column");
+    const size_t count = mxIsCell(arrays) ? mxGetNumberOfElements(arrays) : 1;
+    const size_t most = (size_t)gateway_now()->verb->operands_maximum;
+    if (added && count > most)
+        added = gateway_refuse("the cell array has %zu matrices: imukit_%s takes up to %zu", count,
+                               gateway_now()->verb->name, most);
+    for (size_t i = 0; added && i < count; i++) {
+        const mxArray *array = mxIsCell(arrays) ? mxGetCell(arrays, i) : arrays;
+        if (!is_array(array))
+            added = gateway_refuse("element %zu of the cell array is no matrix: expected matrices "
+                                   "only, or names of files only",
+                                   i + 1);
+        else
+            added = add_array(array, mxIsCell(arrays) ? i + 1 : 0, columns);
+    }
     gateway_now()->named_columns = true;
-    const bool added = path && add_word(path) && add_option("columns", list) && take_rate(rate);
+    added = added && add_option("columns", list) && take_rate(rate);
     free(list);
     return added;
 }
 
-/* @return how many arguments these are; 0: refused */
+/* A matrix, or a cell array of them.
+ * @return how many arguments these are; 0: refused */
 static int take_array(int count, const mxArray *const *arguments)
 {
     const mxArray *columns = find_columns(count, arguments);
@@ -159,7 +193,7 @@ static int take_array(int count, const mxArray *const *arguments)
         return gateway_refuse("the sampling rate is missing: write it behind the array, in Hz, or "
                               "[] where a column is the time");
     if (names)
-        return add_array(arguments[0], arguments[1], names) ? 2 : 0;
+        return add_arrays(arguments[0], arguments[1], names) ? 2 : 0;
     return gateway_refuse("%s: write 'columns', {'gyro_x', 'gyro_y', 'gyro_z'}, for instance, or "
                           "{'gyro', 'accel'} for six; units are SI unless a name states another, "
                           "'gyro_x [deg/s]'",
@@ -172,12 +206,17 @@ static int take_operands(int count, const mxArray *const *arguments)
     if (count == 0)
         return gateway_refuse(takes_models() ? "a model is missing" : "a log is missing");
     const mxArray *first = arguments[0];
-    if (mxIsNumeric(first) || mxIsLogical(first))
+    if (is_array(first) || (mxIsCell(first) && !mxIsEmpty(first) && is_array(mxGetCell(first, 0))))
         return take_array(count, arguments);
     if (!mxIsCell(first))
         return take_operand(first, 0);
     if (mxIsEmpty(first))
         return gateway_refuse("the cell array names no file");
+    for (size_t i = 0; i < mxGetNumberOfElements(first); i++)
+        if (is_array(mxGetCell(first, i)) && !takes_models())
+            return gateway_refuse("element %zu of the cell array is a matrix: expected matrices "
+                                  "only, or names of files only",
+                                  i + 1);
     for (size_t i = 0; i < mxGetNumberOfElements(first); i++)
         if (!mxGetCell(first, i) || !take_operand(mxGetCell(first, i), i))
             return gateway_refuse("element %zu of the cell array is empty", i + 1);
@@ -208,8 +247,8 @@ static bool take_numbers(const option *o, const mxArray *value)
         if (strcmp(o->name, lists[k].name) == 0)
             unit = lists[k].unit;
     if (!unit || !mxIsDouble(value) || count == 0)
-        return gateway_refuse("'%s': expected a text, such as '%s'", o->name,
-                              o->value ? o->value : "");
+        return gateway_refuse("'%s': expected %sa text, such as '%s'", o->name,
+                              unit ? "numbers of class double, or " : "", o->value ? o->value : "");
     char *text = mxMalloc(count * 40), *end = text;
     for (size_t k = 0; k < count; k++)
         end += sprintf(end, "%s%.17g%s", k > 0 ? "," : "", mxGetPr(value)[k], unit);
@@ -323,6 +362,25 @@ static bool is_left_out(const char *name)
     return out;
 }
 
+/* A name that no option has, in the words of the function. */
+static bool refuse_name(const char *given)
+{
+    const verb *v = gateway_now()->verb;
+    const char *names[OPTIONS_MAX];
+    size_t count = 0;
+    for (size_t g = 0; g < GROUPS_MAX; g++)
+        for (size_t i = 0; i < v->groups[g].count && count < OPTIONS_MAX; i++)
+            if (!is_left_out(v->groups[g].options[i].name))
+                names[count++] = v->groups[g].options[i].name;
+    const char *nearest = command_nearest(given, count, names);
+    char meant[64];
+    snprintf(meant, sizeof meant, "%s", nearest ? nearest : "");
+    for (char *c = meant; *c; c++)
+        *c = *c == '-' ? '_' : *c;
+    return gateway_refuse("there is no option '%s'%s%s%s", given, nearest ? "; did you mean '" : "",
+                          meant, nearest ? "'?" : "");
+}
+
 static bool take_option(const mxArray *given, const mxArray *value)
 {
     const char *text = one_text(given);
@@ -339,10 +397,43 @@ static bool take_option(const mxArray *given, const mxArray *value)
         return gateway_refuse("'%s' is an option of the command only", name);
     const option *o = find_option(name);
     if (!o)
-        return add_option(name, NULL); /* the verb says what is meant */
+        return refuse_name(one_text(given));
+    if (gateway_now()->rate_taken && strcmp(name, "rate") == 0)
+        return gateway_refuse("the sampling rate is given twice, behind the array and as 'rate': "
+                              "leave one out");
     if (!value)
         return gateway_refuse("'%s' has no value: options come in pairs of name and value", name);
     return take_value(o, value);
+}
+
+/* The number of an option that was taken [SI]; 0: it is not there, or no such number. */
+static double taken_number(const char *start, const char *unit)
+{
+    const gateway_call *call = gateway_now();
+    const size_t length = strlen(start);
+    double value = 0, sigma;
+    size_t count;
+    for (int i = 2; i < call->count; i++)
+        if (strncmp(call->word[i], start, length) == 0) {
+            const char *text = call->word[i] + length;
+            if (imk_quantity_parse(text, text + strlen(text), imk_unit_of(unit).dimension, 1,
+                                   &value, &sigma, &count, NULL, NULL) != IMK_OK)
+                value = 0;
+        }
+    return value;
+}
+
+/* The log that a simulation writes: in the temporary folder, if there is room for the time and the
+ * three columns that every log has at least. */
+static bool take_log(void)
+{
+    const double rows = taken_number("--rate=", "Hz") * taken_number("--duration=", "s");
+    if (!gateway_has_room(rows * 4 * sizeof(double)))
+        return false;
+    char *path = gateway_file(GATEWAY_LOG);
+    const bool added = path && add_option("output", path);
+    free(path);
+    return added;
 }
 
 bool gateway_take(int count, const mxArray *const *arguments)
@@ -359,10 +450,5 @@ bool gateway_take(int count, const mxArray *const *arguments)
             return false;
     if (!add_option("json", NULL))
         return false;
-    if (!call->log_due)
-        return true;
-    char *path = gateway_file(GATEWAY_LOG);
-    const bool added = path && add_option("output", path);
-    free(path);
-    return added;
+    return !call->log_due || take_log();
 }

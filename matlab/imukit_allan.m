@@ -10,9 +10,9 @@ function result = imukit_allan (varargin)
 % or 'gyro' and 'accel' for three each. Units are SI, or in brackets: 'gyro [deg/s]'. '-' skips a
 % column. NaN stands for a missing sample.
 %
-% R is what jsondecode makes of "imukit allan --json" (docs/json.md): R.result.channels(k) has
-% name, statistic and points, and of each point tau, deviation, lower and upper have value and
-% unit. Warnings in R.findings are given as warnings, too, with the identifier imukit:CODE.
+% R is what jsondecode makes of "imukit allan --json" (docs/json.md), but for the points, which are
+% columns: R.result.channels(k) has name, statistic and points with the columns tau, deviation,
+% lower, upper, edf, count, noise and used, and the units of the first four in units. Warnings in R.findings are given as warnings, too, with the identifier imukit:CODE.
 %
 % Options are those of the command, with _ for -. Numbers are in SI units; a text states its unit:
 %   'statistic'   'oadev' (default), 'adev', 'mdev', 'hdev' ..., or a cell array of them
@@ -26,8 +26,7 @@ function result = imukit_allan (varargin)
 %   x = 1e-3 * randn (36000, 3);
 %   r = imukit_allan (x, 100, 'columns', 'gyro');
 %   p = r.result.channels(1).points;
-%   tau = arrayfun (@(q) q.tau.value, p);
-%   loglog (tau, arrayfun (@(q) q.deviation.value, p))
+%   loglog (p.tau, p.deviation)
 %
 % See also imukit_identify.
 

@@ -4,8 +4,9 @@ function result = imukit_calibrate (varargin)
 %   R = imukit_calibrate (FILE, 'procedure', PROCEDURE, NAME, VALUE, ...)
 %   R = imukit_calibrate (X, RATE, 'columns', NAMES, 'procedure', PROCEDURE, ...)
 %   R = imukit_calibrate ({FILE, FILE, ...}, 'procedure', {PROCEDURE, PROCEDURE, ...}, ...)
+%   R = imukit_calibrate ({X, X, ...}, RATE, 'columns', NAMES, 'procedure', ...)
 %
-% FILE, X, RATE and NAMES are as of imukit_allan. PROCEDURE is 'multiposition' for a unit turned by
+% FILE, X, RATE and NAMES are as of imukit_allan; RATE and NAMES hold for all matrices. PROCEDURE is 'multiposition' for a unit turned by
 % hand from rest to rest, 'sixposition', 'ferraris', 'turns', 'rate-table', 'tumble', 'centrifuge',
 % 'spin', 'thermal', 'magnetometer' or 'repeatability' (docs/calibrate.md).
 %

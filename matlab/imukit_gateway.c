@@ -44,9 +44,11 @@ static void run_verb(void)
 static void end_failed(void)
 {
     const gateway_call *call = gateway_now();
-    char id[64], text[GATEWAY_TEXT_SIZE];
+    char id[64], text[GATEWAY_TEXT_SIZE + 80];
     snprintf(id, sizeof id, "imukit:%s", call->failed_by);
-    snprintf(text, sizeof text, "%s", call->failure);
+    const bool full = call->log_due && strcmp(call->failed_by, "write") == 0;
+    snprintf(text, sizeof text, "%s%s", call->failure,
+             full ? "; the log is a temporary file in the folder that TMPDIR names" : "");
     gateway_clear();
     mexErrMsgIdAndTxt(id, "%s", text);
 }
@@ -71,6 +73,7 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[])
     gateway_call *call = gateway_now();
     mxArray *columns = NULL, *data = NULL, *result;
     gateway_clear();
+    mexAtExit(gateway_clear); /* also where the person left by Ctrl-C */
     if (nlhs > 1)
         (void)gateway_refuse("there is one result");
     else if (nrhs < 1)

@@ -4,8 +4,9 @@ function result = imukit_identify (varargin)
 %   R = imukit_identify (FILE, NAME, VALUE, ...)
 %   R = imukit_identify (X, RATE, 'columns', NAMES, NAME, VALUE, ...)
 %   R = imukit_identify ({FILE, FILE, ...}, 'runs', true, ...)
+%   R = imukit_identify ({X, X, ...}, RATE, 'columns', NAMES, 'runs', true, ...)
 %
-% FILE, X, RATE and NAMES are as of imukit_allan.
+% FILE, X, RATE and NAMES are as of imukit_allan; RATE and NAMES hold for all matrices.
 %
 % R is what jsondecode makes of "imukit identify --json" (docs/json.md):
 %   R.result.channels(k).terms.angle_random_walk   present, value, sigma, lower, upper, unit

@@ -14,6 +14,8 @@ function test_gateway (build, shared)
   here = cd (folder);
   unwind_protect
     test_values ();
+    test_many_points ();
+    test_sessions ();
     test_files (shared);
     test_arrays ();
     test_models ();
@@ -89,9 +91,41 @@ function compare (a, b, where)
   end
 end
 
+% The points of curves, which jsondecode() makes structs, as columns.
+function value = with_columns (value)
+  if ! isstruct (value)
+    return
+  end
+  for k = 1:numel (value)
+    for name = fieldnames (value)'
+      member = value(k).(name{1});
+      value(k).(name{1}) = with_columns (member);
+      if strcmp (name{1}, 'points')
+        value(k).points = columns_of (member);
+      end
+    end
+  end
+end
+
+function columns = columns_of (points)
+  units = columns = struct ();
+  for name = fieldnames (points)'
+    members = {points.(name{1})}';
+    if isstruct (members{1})
+      columns.(name{1}) = cellfun (@(q) q.value, members);
+      units.(name{1}) = members{1}.unit;
+    elseif isnumeric (members{1})
+      columns.(name{1}) = cell2mat (members);
+    else
+      columns.(name{1}) = members;
+    end
+  end
+  columns.units = units;
+end
+
 function same_as_command (result, words)
   text = run_command (words);
-  expected = jsondecode (text);
+  expected = with_columns (jsondecode (text));
   for name = fieldnames (expected)'
     compare (result.(name{1}), expected.(name{1}), name{1});
   end
@@ -100,7 +134,7 @@ function same_as_command (result, words)
     numbers = [numbers; numbers_of(result.(name{1}))];
   end
   assert (numel (numbers) > 20);
-  assert (isequal (numbers, numbers_of_text (text))); % every bit
+  assert (isequal (sort (numbers), sort (numbers_of_text (text)))); % every bit
 end
 
 % ---- what is right -------------------------------------------------------------------------------
@@ -109,11 +143,39 @@ end
 function test_values ()
   evaluation = imukit_allan ([1; 2; 1; 3; 2; 4], 1, 'columns', 'x', 'tau', [1 2]);
   points = evaluation.result.channels.points;
-  assert (size (points), [2 1]);
+  assert (points.tau, [1; 2]);
   % sqrt(mean of squared differences/2): differences 1, -1, 2, -1, 2
-  assert (points(1).deviation.value, sqrt (11 / 5 / 2), 1e-15);
-  assert (points(1).tau.unit, 's');
+  assert (points.deviation(1), sqrt (11 / 5 / 2), 1e-15);
+  assert (size (points.noise), [2 1]);
+  assert (points.units.tau, 's');
   assert (isempty (evaluation.findings) || isstruct (evaluation.findings));
+end
+
+% The time to read a result grows with its length, not with its square, which took minutes here.
+function test_many_points ()
+  tic;
+  curve = imukit_allan (sin ((1:20000)'.^2), 100, 'columns', 'gyro_x', 'tau', 'all');
+  assert (numel (curve.result.channels.points.upper), 10000);
+  clear curve
+  assert (toc < 20); % 0.4 s
+end
+
+% Records of several sessions: what files of the same numbers are.
+function test_sessions ()
+  columns = {'time', 'gyro [deg/s]', 'accel'};
+  for k = 1:3
+    run_command (sprintf ('simulate AHRS --rate 20Hz --duration 100s --seed %d -o run%d.csv', k, k));
+    data{k} = csvread (sprintf ('run%d.csv', k), 1, 0);
+    files{k} = sprintf ('run%d.csv', k);
+  end
+  from_arrays = imukit_identify (data, [], 'columns', columns, 'runs', true);
+  from_files = imukit_identify (files, 'runs', true);
+  assert (from_arrays.inputs.logs, {'array-1.npy'; 'array-2.npy'; 'array-3.npy'});
+  assert (numbers_of (from_arrays.result.channels), numbers_of (from_files.result.channels));
+  option = {'procedure', 'repeatability'};
+  from_arrays = imukit_calibrate (data, [], 'columns', columns, option{:});
+  from_files = imukit_calibrate (files, option{:});
+  assert (numbers_of (from_arrays.result), numbers_of (from_files.result));
 end
 
 function test_files (shared)
@@ -146,7 +208,7 @@ function test_arrays ()
   % what is not finite is missing
   data(1001:1003, 3) = NaN;
   gaps = imukit_allan (data, [], 'columns', columns);
-  assert (gaps.result.channels(2).points(1).used < 1);
+  assert (gaps.result.channels(2).points.used(1) < 1);
   % a row of names, and columns that are skipped
   one = imukit_allan (data(:, 1:2), [], 'columns', 'time,gyro_x [deg/s]');
   assert (numel (one.result.channels), 1);
@@ -254,6 +316,7 @@ function test_refusals ()
   refused ('the readings are logical', u, 'allan', true (9, 3), 100, gyro{:});
   refused ('the readings are complex', u, 'allan', x + 1i, 100, gyro{:});
   refused ('the readings are empty', u, 'allan', zeros (0, 3), 100, gyro{:});
+  refused ('full(x) converts', u, 'allan', sparse (x), 100, gyro{:});
   refused ('the readings are sparse', u, 'allan', sparse (x), 100, gyro{:});
   refused ('an array of more dimensions', u, 'allan', randn (9, 3, 2), 100, gyro{:});
   refused ('has 2 columns, and ''columns'' names 3', u, 'allan', x(:, 1:2), 100, gyro{:});
@@ -271,11 +334,16 @@ function test_refusals ()
   refused ('finite values', 'imukit:too_few_values', 'identify', NaN (1000, 3), 100, gyro{:});
   refused ('a log is missing', u, 'allan');
   refused ('expected a log', u, 'allan', '');
-  refused ('expected a log', u, 'allan', struct ('a', 1));
+  refused ('expected a log', u, 'allan', struct ('a', 1), 100, gyro{:});
+  refused ('this is struct', u, 'allan', struct ('a', 1));
+  refused ('takes up to 1', u, 'allan', {x, x}, 100, gyro{:});
+  refused ('element 2 of the cell array is no matrix', u, 'identify', {x, 'a'}, 100, gyro{:});
+  refused ('element 2 of the cell array is a matrix', u, 'identify', {'log.csv', x}, 100, gyro{:});
+  refused ('the readings are empty', u, 'identify', {x, []}, 100, gyro{:});
   refused ('expected a log', u, 'allan', ['ab'; 'cd']);
   refused ('expected a log', u, 'allan', @sin);
   refused ('names no file', u, 'identify', {});
-  refused ('expected a log', u, 'identify', {'log.csv', 3});
+  refused ('element 2 of the cell array', u, 'identify', {'log.csv', 3});
   refused ('standard input', u, 'allan', '-');
   refused ('cannot be opened', f, 'allan', 'missing.csv');
   refused ('expected a model', u, 'drift', 3);
@@ -284,7 +352,19 @@ function test_refusals ()
   refused ('did you mean', f, 'drift', 'tacticla');
   refused ('model.yaml:2', f, 'drift', sprintf ('imukit: 1\ngyr: {}\n'));
   % options
-  refused ('did you mean --rate', u, 'allan', 'log.csv', 'rat', 100);
+  refused ('there is no option ''rat''; did you mean ''rate''?', u, 'allan', 'log.csv', 'rat', 100);
+  refused ('did you mean ''gyro_unit''?', u, 'allan', x, 100, gyro{:}, 'gyro_unti', 'deg/s');
+  refused ('there is no option ''xyzzy''', u, 'allan', 'log.csv', 'xyzzy', 1);
+  refused ('given twice', u, 'allan', x, 100, gyro{:}, 'rate', 50);
+  refused ('--rate 100Hz does not agree with the time column', f, 'allan', ...
+    [(1:1000)' / 50, x], 100, 'columns', 'time,gyro');
+  refused ('--rate 100', f, 'allan', [(1:1000)' / 50, x], [], 'columns', 'time,gyro', 'rate', 100);
+  refused ('''gyro_x'', ''gyro_y''', u, 'allan', x, 100, 'gyro');
+  refused ('''columns'' has no value', u, 'identify', 'log.csv', 'columns');
+  refused ('numbers of class double, or a text', u, 'allan', 'log.csv', 'tau', single (1));
+  refused ('averaging time', u, 'allan', 'log.csv', 'tau', [1 NaN]);
+  refused ('of the command only', u, 'allan', 'log.csv', 'strict', true);
+  refused ('temporary folder', u, 'simulate', 'AHRS', 'rate', 1000, 'duration', 1e9);
   refused ('expected the name of an option', u, 'allan', 'log.csv', 3, 4);
   refused ('has no value', u, 'allan', 'log.csv', 'rate');
   refused ('expected one finite number', u, 'allan', 'log.csv', 'rate', NaN);

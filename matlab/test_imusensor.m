@@ -31,10 +31,11 @@ end
 function compare (y, rate, variance, error_)
   r = imukit_allan (y, rate, 'columns', 'gyro', 'confidence', 0.999999999);
   for k = 1:3
-    for p = r.result.channels(k).points'
-      due = sqrt (variance (p.tau.value));
-      assert (p.lower.value <= due * (1 + error_) && p.upper.value >= due * (1 - error_), ...
-        'channel %d at %g s: %g, expected %g', k, p.tau.value, p.deviation.value, due);
+    p = r.result.channels(k).points;
+    for i = 1:numel (p.tau)
+      due = sqrt (variance (p.tau(i)));
+      assert (p.lower(i) <= due * (1 + error_) && p.upper(i) >= due * (1 - error_), ...
+        'channel %d at %g s: %g, expected %g', k, p.tau(i), p.deviation(i), due);
     end
   end
 end

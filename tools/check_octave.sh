@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # The functions of GNU Octave: they are built, agree with the command to the last bit, refuse what is
-# wrong; the file for MATLAB's imuSensor makes the noise of the model; the examples of docs/matlab.md
-# run. Real logs are expected in ../shared/data.
+# wrong and leave no file behind Ctrl-C; the file for MATLAB's imuSensor makes the noise of the model;
+# the examples of docs/matlab.md run. Real logs are expected in ../shared/data.
 set -eu
 cd "$(dirname "$0")/.."
 build=$(realpath "${BUILD:-build}")
@@ -17,6 +17,19 @@ run() { # FILE ARGUMENT...
 }
 run matlab/test_gateway.m "$build" ../shared/data
 run matlab/test_imusensor.m "$build"
+
+# Ctrl-C within a simulation leaves no temporary file.
+mkdir "$out/tmp"
+TMPDIR=$PWD/$out/tmp $octave --eval "addpath ('$build/octave');
+    imukit_simulate ('AHRS', 'rate', 1000, 'duration', 20000);" >"$out/interrupted.log" 2>&1 </dev/null &
+for _ in $(seq 200); do
+    [ -z "$(ls "$out"/tmp/*/ 2>/dev/null)" ] || break
+    sleep 0.05
+done
+[ -n "$(ls "$out/tmp")" ] || { echo "no simulation to interrupt"; exit 1; }
+kill -INT $!
+if wait $!; then echo "the simulation ended before Ctrl-C"; exit 1; fi
+[ -z "$(ls -A "$out/tmp")" ] || { echo "Ctrl-C leaves $(ls "$out/tmp")"; exit 1; }
 
 # The page has a folder of its own, which looks like the root of the repository.
 ln -s "$build/imukit" "$build/octave" "$out/build/"

@@ -198,9 +198,9 @@ static void show_inputs(const imk_campaign_results *file, const char *path, imk_
     imk_result_text(result, "results", path);
     imk_result_text(result, "version", c->version);
     imk_result_count(result, "seed", (long long)c->seed);
-    imk_result_count(result, "runs", (long long)c->run_count);
+    imk_result_count(result, "run_count", (long long)c->run_count);
     imk_result_count(result, "first", (long long)file->run[0]);
-    imk_result_count(result, "count", (long long)file->runs);
+    imk_result_count(result, "runs", (long long)file->runs);
     imk_result_text(result, "attitude_errors",
                     stated_in(c) == IMK_ATTITUDE_EARTH ? "earth" : "local");
     (void)imk_result_json(result, "parameters", c->parameters);

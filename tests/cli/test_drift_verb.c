@@ -542,7 +542,7 @@ static void test_aids(void **state)
     assert_non_null(json_object_get(json_array_get(times, 2), "believed"));
     json_t *runs = json_object_get(json_object_get(result, "monte_carlo"), "times");
     json_t *nees = json_object_get(json_array_get(runs, 0), "nees");
-    assert_int_equal(json_integer_value(json_object_get(nees, "degrees")), 9);
+    assert_int_equal(json_integer_value(json_object_get(nees, "degrees_of_freedom")), 9);
     assert_true(json_number_value(json_object_get(nees, "mean")) > 3.0 &&
                 json_number_value(json_object_get(nees, "mean")) < 20.0);
     json_decref(document);

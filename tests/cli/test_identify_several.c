@@ -167,7 +167,7 @@ static void test_runs(void **state)
         assert_true(number(joint, "sigma") * sqrt(information) < 1.1);
         json_t *agreement = json_object_get(json_array_get(channels, c), "agreement");
         assert_true(number(agreement, "probability") > 1e-7);
-        assert_true(number(agreement, "degrees") >= 2);
+        assert_true(number(agreement, "degrees_of_freedom") >= 2);
     }
     assert_int_equal(messages(result_of(root, "verdict"), "runs_differ", &text), 0);
     json_decref(root);

@@ -277,6 +277,7 @@ imukit: 1
 accel: {noise: {density: two-sided, velocity_white: 1e-3 m/s/sqrt(Hz), velocity_random_walk: 1e-3 m/s/sqrt(s)}}
 END
 $IMUKIT simulate uncounted.yaml --rate 50Hz --duration 40s --no-earth --decimals 12 | cut -d, -f1,2 >uncounted.csv
+$IMUKIT simulate uncounted.yaml --rate 25Hz --duration 30s --no-earth --decimals 12 --seed 4 | cut -d, -f1,2 >uncounted_slow.csv
 sed '1s/.*/time [s],depth [m]/' uncounted.csv >depth.csv
 
 # ---- what only few verbs read ----------------------------------------------------------------------

@@ -179,7 +179,7 @@ static void band_data(imk_spectrum_band b, const char *unit, imk_result *result)
     imk_result_quantity(result, "density", b.density, unit);
     imk_result_quantity(result, "lower", b.lower, unit);
     imk_result_quantity(result, "upper", b.upper, unit);
-    imk_result_number(result, "degrees", b.degrees);
+    imk_result_number(result, "degrees_of_freedom", b.degrees);
     imk_result_end(result);
 }
 

@@ -54,7 +54,7 @@ static void show_runs_data(const imk_drift_models *r, imk_result *result)
             imki_drift_nees_due(r, k, &low, &high);
             imk_result_object(result, "nees");
             imk_result_number(result, "mean", r->nees[k]);
-            imk_result_number(result, "degrees", r->nees_degrees);
+            imk_result_number(result, "degrees_of_freedom", r->nees_degrees);
             imk_result_number(result, "lower", low);
             imk_result_number(result, "upper", high);
             imk_result_end(result);

@@ -193,7 +193,7 @@ static void run_data(const imk_identify_several *s, size_t channel,
     imki_channel_data(&s->joint, channel, result);
     imk_result_object(result, "agreement");
     imk_result_number(result, "chi_square", a->chi_square);
-    imk_result_count(result, "degrees", (long long)a->degrees);
+    imk_result_count(result, "degrees_of_freedom", (long long)a->degrees);
     imk_result_number(result, "probability", a->probability);
     if (imki_begin_object(result, "largest_difference", a->record >= 0 && a->term >= 0)) {
         imk_result_text(result, "log", records[a->record].label);
@@ -221,7 +221,7 @@ static void rates_data(const imk_identify_several *s, size_t channel, imk_result
     if (imki_begin_object(result, "readings", parts->count > 0)) {
         imk_result_text(result, "kind", kinds[parts->kind]);
         imk_result_number(result, "chi_square", parts->chi_square);
-        imk_result_count(result, "degrees", (long long)parts->degrees);
+        imk_result_count(result, "degrees_of_freedom", (long long)parts->degrees);
         imk_result_number(result, "probability", parts->probability);
         imk_result_end(result);
     }

@@ -47,7 +47,7 @@ static void settings_data(const imk_physics_shown *p, imk_result *result)
 static void run_data(const imk_physics_shown *p, const imk_physics_log *r, imk_result *result)
 {
     const imk_instrument *instrument = p->settings->instrument;
-    imk_result_count(result, "samples", (long long)r->samples);
+    imk_result_count(result, "rows", (long long)r->samples);
     imk_result_quantity(result, "internal_step", internal_step(p), "s");
     imk_result_array(result, "outputs");
     for (size_t i = 0; i < instrument->output_count; i++) {
