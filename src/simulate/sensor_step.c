@@ -88,26 +88,30 @@ static void repeat(double value, size_t places, double *row)
         row[i] = value;
 }
 
+/* The same number; NaN instead of an infinite one, which the range of the output would hide. */
+static double told(double truth)
+{
+    return truth + 0.0 * truth;
+}
+
 /* One truth for all. */
 static void expose_all(imk_sensor *s, const imk_sensor_truth *truth)
 {
     const size_t places = imki_row_places(s->count);
     for (int i = 0; i < 3; i++) {
-        repeat(truth->angular_rate[i], places, imki_sensor_row(s, i));
-        repeat(truth->specific_force[i], places, imki_sensor_row(s, IMKI_SENSOR_FORCE + i));
-        repeat(truth->angular_acceleration[i], places,
+        repeat(told(truth->angular_rate[i]), places, imki_sensor_row(s, i));
+        repeat(told(truth->specific_force[i]), places, imki_sensor_row(s, IMKI_SENSOR_FORCE + i));
+        repeat(told(truth->angular_acceleration[i]), places,
                imki_sensor_row(s, IMKI_SENSOR_ACCELERATION + i));
     }
-    repeat(truth->temperature, places, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE));
-    repeat(truth->temperature_rate, places, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE_RATE));
+    repeat(told(truth->temperature), places, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE));
+    repeat(told(truth->temperature_rate), places, imki_sensor_row(s, IMKI_SENSOR_TEMPERATURE_RATE));
 }
 
 static void take(const double *truth, size_t first, size_t count, double *row)
 {
-    if (truth)
-        memcpy(row, truth + first, count * sizeof *row);
-    else
-        memset(row, 0, count * sizeof *row);
+    for (size_t i = 0; i < count; i++)
+        row[i] = truth ? told(truth[first + i]) : 0.0;
 }
 
 /* Those of a group. */
