@@ -58,8 +58,11 @@ static int show(const info_options *o, const imk_info_log *info, const imk_info_
     return show_end(result, &options, EXIT_DONE);
 }
 
+/* What can be read is shown, also where something fails; the failure is the last that is read, but
+ * JSON has to know it before.
+ * @param lacking  what other commands would ask for; its status is IMK_OK: nothing */
 static int look(const info_options *o, imk_log_reader *reader, imk_info_file *file,
-                const char *path)
+                const char *path, const imk_error *lacking)
 {
     imk_info_log_settings settings = imk_info_log_default();
     imk_info_log *info;
@@ -74,15 +77,22 @@ static int look(const info_options *o, imk_log_reader *reader, imk_info_file *fi
     const imk_status status = imk_info_log_run(&source, &settings, &job, &info, &error);
     job_progress_end(&shown);
     const imk_findings none = {.count = 0};
-    int code = -1;
+    int code = EXIT_DONE;
     if (status == IMK_OK)
         (void)log_input_tell(path, &info->findings, IMK_OK, NULL);
     if (info && o->json) /* the text has them */
         log_input_note(path, &info->findings);
-    if (info && info->rows_read > 0)
+    const bool readable = info && info->rows_read > 0;
+    if (readable && !o->json)
         code = show(o, info, file, path, status == IMK_OK);
     if (status != IMK_OK)
         code = log_input_tell(path, info ? &info->findings : &none, status, &error);
+    else if (lacking->status != IMK_OK && code == EXIT_DONE)
+        code = command_log_error(lacking, path);
+    if (readable && o->json) {
+        const int printed = show(o, info, file, path, status == IMK_OK);
+        code = code == EXIT_DONE ? printed : code;
+    }
     imk_info_log_free(info);
     return code;
 }
@@ -110,10 +120,11 @@ static int list(const info_options *o, const char *path, const imk_log_settings 
         return command_log_error(why, path);
     file->format = format->title;
     file->stream_count = file->stream_count < STREAMS_MAX ? file->stream_count : STREAMS_MAX;
+    const bool fails = settings->topic || settings->instance > 0 || why->status == IMK_ERROR_EMPTY;
+    const int failed = fails && o->json ? command_log_error(why, path) : EXIT_DONE;
     const int code = show(o, NULL, file, path, false);
-    const bool asked = settings->topic || settings->instance > 0;
-    if (asked || why->status == IMK_ERROR_EMPTY)
-        return command_log_error(why, path);
+    if (fails)
+        return o->json ? failed : command_log_error(why, path);
     if (!o->json)
         printf("Choose one: %s --topic TOPIC%s\n", command_line(),
                names_repeat(file) ? " --instance N" : "");
@@ -144,10 +155,8 @@ static int inspect(const info_options *o, const char *path)
         file.stream_count = imk_log_stream_list(reader, STREAMS_MAX, stream);
         file.stream_count = file.stream_count < STREAMS_MAX ? file.stream_count : STREAMS_MAX;
         file.chosen = imk_log_stream_get(reader);
-        code = look(o, reader, &file, path);
+        code = look(o, reader, &file, path, &lacking);
         imk_log_close(reader);
-        if (lacking.status != IMK_OK && code == EXIT_DONE)
-            code = command_log_error(&lacking, path);
     } else if (status == IMK_ERROR_NAME_UNKNOWN || status == IMK_ERROR_EMPTY) {
         code = list(o, path, &settings, &error, &file, stream);
     } else {

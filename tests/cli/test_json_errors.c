@@ -126,6 +126,16 @@ static void test_result_and_error(void **state)
     assert_true(json_is_object(json_object_get(document, "result")));
     get("$I allan good.csv --json", 0);
     assert_null(json_object_get(document, "error"));
+    /* What is known of a log that other verbs refuse. */
+    assert_int_equal(run("gzip -c good.csv | head -c 3000 > cut.csv.gz && cut -d, -f2- good.csv > "
+                         "timeless.csv"),
+                     0);
+    get("$I info cut.csv.gz --json", 1);
+    assert_string_equal(error_of("code"), "compressed");
+    assert_true(json_is_object(json_object_get(document, "result")));
+    get("$I info timeless.csv --json", 1);
+    assert_string_equal(error_of("code"), "rate_missing");
+    assert_true(json_is_object(json_object_get(document, "result")));
     sweep();
 }
 
