@@ -63,7 +63,9 @@ typedef struct imk_sensor imk_sensor;
 
 /** Bytes for the sensors of these settings, of a model that must be valid: for each about 4 kB an
  *  axis (4.6 kB of more than 32), 5 kB more with flicker noise, and 0.3 kB for each Gauss-Markov
- *  term, 0.6 kB for each sinusoid. 0 if `count` is 0 or this machine cannot address them. */
+ *  term, 0.6 kB for each sinusoid. Behind the first, noise is made for eight at a time, so that two
+ *  need two and a half times as much for each as one or eight. 0 if `count` is 0 or this machine
+ *  cannot address them. */
 IMK_API size_t imk_sensor_size(const imk_model *model, const imk_sensor_settings *settings);
 
 /** Validate and start.
