@@ -168,6 +168,9 @@ def write_log(path: str | os.PathLike[str], data: Data, rate: float | str | None
     settings = {"to_gyro_unit": to_gyro_unit, "to_accel_unit": to_accel_unit,
                 "to_time_unit": to_time_unit, "to_temperature_unit": to_temperature_unit}
     record = open_record(data, rate, columns, log, stamped=True)
+    if getattr(data, "labels", ()):
+        warnings.warn("a column of texts is written as the numbers of its texts in log.labels; give "
+                      "the path of the log to keep them", DataWarning, stacklevel=2)
     findings, rows = _core.write_log(record, name, -1 if decimals is None else decimals,
                                      getattr(data, "time_origin_nanoseconds", 0), settings, threads,
                                      progress)

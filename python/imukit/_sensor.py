@@ -76,8 +76,8 @@ class Sensor:
         """
         if specific_force is None and self.count == 1 and angular_rate is not None:
             angular_rate, specific_force = self._halves(angular_rate)
-        for name, given in (("angular_rate", angular_rate), ("specific_force", specific_force)):
-            if given is None:
+        for name, values in (("angular_rate", angular_rate), ("specific_force", specific_force)):
+            if values is None:
                 raise TypeError(f"{name}: expected three numbers, and there is None")
         if temperature_rate is not None and temperature is None:
             raise ValueError("temperature_rate: there is no temperature")
@@ -90,10 +90,13 @@ class Sensor:
             if self.count > 1:
                 out = _arrays.matrix(out, len(self.channels), self.count)
         try:
-            return self._core.step(angular_rate, specific_force, angular_acceleration, temperature,
-                                   temperature_rate, out)
+            if not (hasattr(angular_rate, "mask") or hasattr(specific_force, "mask") or
+                    hasattr(angular_acceleration, "mask") or hasattr(temperature, "mask")):
+                return self._core.step(angular_rate, specific_force, angular_acceleration,
+                                       temperature, temperature_rate, out)
         except (BufferError, TypeError, ValueError):
-            pass  # what can be converted is, and the rest refused, below
+            pass
+        # What can be converted is, what is masked becomes NaN, and the rest is refused.
         rate, force, acceleration, kelvin, slope = (
             None if values is None else _arrays.of_rows(values, name) for name, values in (
                 ("angular_rate", angular_rate), ("specific_force", specific_force),

@@ -73,6 +73,14 @@ class Written(unittest.TestCase):
         self.assertIn("dtheta_x [rad]", text.splitlines()[0])
         self.assertEqual(float(text.splitlines()[9].split(",")[1]), log["dtheta_x"][8])
 
+    def test_texts(self):
+        pathlib.Path(self.path("log.csv")).write_text(
+            "time [s],gyro_x [rad/s],section\n0,1,a\n0.01,2,a\n0.02,3,b\n", encoding="utf-8")
+        imukit.write_log(self.path("copy.csv"), self.path("log.csv"))
+        self.assertIn("0.02,3,b", pathlib.Path(self.path("copy.csv")).read_text(encoding="utf-8"))
+        with self.assertWarnsRegex(imukit.DataWarning, "texts"):
+            imukit.write_log(self.path("numbers.csv"), imukit.read_log(self.path("log.csv")))
+
     def test_epoch(self):
         origin = 1_700_000_000
         pathlib.Path(self.path("log.csv")).write_text(

@@ -83,6 +83,13 @@ class Steps(unittest.TestCase):
             with self.assertRaises((ValueError, BufferError)):
                 imukit.Sensor("tactical", 100, count=8).step(rates, GRAVITY, out=out)
 
+    @unittest.skipIf(numpy is None, "needs NumPy")
+    def test_masked(self):
+        sensor = imukit.Sensor("tactical", rate=100, seed=1)
+        rates = numpy.ma.masked_array(numpy.zeros(3), [True, False, False])
+        self.assertTrue(numpy.isnan(sensor.step(rates, numpy.array(GRAVITY))[0]))
+        self.assertFalse(numpy.isnan(sensor.step(numpy.zeros(3), numpy.array(GRAVITY))).any())
+
     def test_what_is_converted_without_numpy(self):
         due = list(imukit.Sensor("tactical", 100).step([0, 0.5, 0.25], GRAVITY))
         single = array.array("f", [0, 0.5, 0.25])
