@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A self-contained HTML page: styles and drawings inside, nothing fetched, every text escaped. */
+/* A self-contained HTML page: style, script and drawings inside, nothing fetched, every text
+ * escaped. */
 #include "markup_internal.h"
 #include "page_internal.h"
 
@@ -10,38 +11,10 @@
  * callers need no check after every paragraph. */
 struct imki_page {
     imki_text text;
+    bool whole; /* not only what is within <main> */
     int figures;
     imk_error failure; /* of the first drawing that failed */
 };
-
-static const char style[] =
-    ":root{color-scheme:light}*{box-sizing:border-box}\n"
-    "body{margin:0;background:#f5f6f7;color:#1d2327;"
-    "font:16px/1.55 system-ui,-apple-system,'Segoe UI',Roboto,'DejaVu Sans',sans-serif}\n"
-    "main{max-width:1100px;margin:0 auto;padding:2.2rem 1.4rem 4rem;background:#fff;"
-    "min-height:100vh}\n"
-    "h1{font-size:1.75rem;line-height:1.25;margin:0}"
-    ".subtitle{color:#5b6770;margin:.3rem 0 1.4rem}\n"
-    "h2{font-size:1.2rem;margin:2.2rem 0 .7rem;padding-bottom:.25rem;"
-    "border-bottom:1px solid #dfe3e6}\n"
-    ".verdict{border-left:5px solid;padding:.6rem .9rem;margin:.6rem 0;border-radius:0 4px 4px 0}\n"
-    ".good{border-color:#009e73;background:#e9f6f1}.note{border-color:#0072b2;background:#e8f2f9}"
-    ".warning{border-color:#d55e00;background:#fdf0e7}\n"
-    ".table{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums;"
-    "font-size:.92rem;margin:.4rem 0}\n"
-    "th,td{padding:.35rem .8rem;text-align:left;vertical-align:top;"
-    "border-bottom:1px solid #e6e9eb;white-space:pre-line}\n"
-    "th{background:#f0f2f4}td:first-child{font-weight:600}\n"
-    "pre{background:#f6f7f8;border:1px solid #e1e5e8;border-radius:4px;padding:.8rem 1rem;"
-    "overflow-x:auto;font:.85rem/1.5 ui-monospace,'DejaVu Sans Mono',Menlo,Consolas,monospace}\n"
-    "figure{margin:1rem 0}figure svg{width:100%;height:auto}"
-    "figcaption{color:#5b6770;font-size:.9rem}\n"
-    "footer{margin-top:3rem;color:#7a858d;font-size:.82rem}\n"
-    "@media print{@page{margin:15mm}body{font-size:10.5pt;print-color-adjust:exact;"
-    "-webkit-print-color-adjust:exact}body,main{background:#fff}"
-    "main{max-width:none;padding:0;min-height:0}h1,h2{break-after:avoid}"
-    "figure,table,tr,pre,.verdict{break-inside:avoid}.table{overflow:visible}"
-    "pre{white-space:pre-wrap}th,td{padding:.2rem .5rem}.sheet{break-after:page}}\n";
 
 static void element(imki_page *page, const char *open, const char *text, const char *close)
 {
@@ -52,17 +25,38 @@ static void element(imki_page *page, const char *open, const char *text, const c
     imki_text_put(&page->text, close);
 }
 
-imki_page *imki_page_create(const char *title, const char *subtitle)
+/* Up to the body. Nothing but the script below may run, and nothing can be fetched. */
+static void put_head(imki_page *page, const char *title)
+{
+    imki_text_add(&page->text,
+                  "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                  "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+                  "style-src 'unsafe-inline'; script-src '%s'; img-src data:; base-uri 'none'; "
+                  "form-action 'none'\">\n"
+                  "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n",
+                  imki_page_script_hash);
+    element(page, "<title>", title, "</title>\n<style>\n");
+    imki_text_put(&page->text, (const char *)imki_page_style);
+    imki_text_put(&page->text, "</style>\n</head>\n<body class=\"imukit-page\">\n<main>\n");
+}
+
+static void put_tail(imki_page *page)
+{
+    imki_text_put(&page->text,
+                  "<footer>Made by imukit " IMK_VERSION ".</footer>\n</main>\n<script>");
+    imki_text_put(&page->text, (const char *)imki_page_script);
+    imki_text_put(&page->text, "</script>\n</body>\n</html>\n");
+}
+
+imki_page *imki_page_create(const char *title, const char *subtitle, bool whole)
 {
     imki_page *page = calloc(1, sizeof *page);
     if (!page)
         return NULL;
-    element(page,
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
-            title, "</title>\n<style>\n");
-    imki_text_put(&page->text, style);
-    element(page, "</style>\n</head>\n<body>\n<main>\n<h1>", title, "</h1>\n");
+    page->whole = whole;
+    if (whole)
+        put_head(page, title);
+    element(page, "<article class=\"imukit\">\n<h1>", title, "</h1>\n");
     element(page, "<p class=\"subtitle\">", subtitle, "</p>\n");
     return page;
 }
@@ -184,8 +178,9 @@ imk_status imki_page_take(imki_page *page, char **text, size_t *size, imk_error 
 {
     if (!page)
         return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
-    imki_text_put(&page->text,
-                  "<footer>Made by imukit " IMK_VERSION ".</footer>\n</main>\n</body>\n</html>\n");
+    imki_text_put(&page->text, "</article>\n");
+    if (page->whole)
+        put_tail(page);
     imk_status status = page->failure.status;
     if (page->text.failed)
         status = imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);

@@ -5,13 +5,19 @@
 
 #include "imukit/report.h"
 
-/* A self-contained HTML page being built: styles and drawings are inside, nothing is fetched,
- * every text is escaped. Functions accept the NULL of a failed imki_page_create(), which
+/* Script and style sheet of every page, and the hash by which a page allows the script:
+ * "sha256-…". cmake/write_page_assets.cmake makes them from page_script.js and page_style.css. */
+extern const unsigned char imki_page_script[], imki_page_style[];
+extern const char imki_page_script_hash[];
+
+/* A self-contained HTML page being built: style, script and drawings are inside, nothing is
+ * fetched, every text is escaped. Functions accept the NULL of a failed imki_page_create(), which
  * imki_page_take() then reports. */
 typedef struct imki_page imki_page;
 
-/* Start a page; NULL when memory is exhausted, which every function below allows. */
-imki_page *imki_page_create(const char *title, const char *subtitle);
+/* Start a page, or only the <article> of one; NULL when memory is exhausted, which every function
+ * below allows. */
+imki_page *imki_page_create(const char *title, const char *subtitle, bool whole);
 /* A heading, escaped. */
 void imki_page_heading(imki_page *page, const char *text);
 /* A paragraph of plain text (escaped). */

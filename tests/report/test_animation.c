@@ -218,7 +218,7 @@ static void test_page(void **state)
     imk_error error;
     char *text;
     size_t size;
-    imki_page *page = imki_page_create("t", "s");
+    imki_page *page = imki_page_create("t", "s", true);
     imki_page_animation(page, &animation, "first > one");
     imki_page_animation(page, &animation, "second");
     imki_page_animation(NULL, &animation, "no page");
