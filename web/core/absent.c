@@ -84,9 +84,7 @@ void imki_leftover_drop(int slot)
     (void)slot;
 }
 
-void imk_output_file_abandon_all(void)
-{
-}
+void imk_output_file_abandon_all(void) {}
 
 /* ---- pipes, temporary files ----------------------------------------------------------------- */
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The machine that a page is: its verbs, and what POSIX has and WASI has not, for files that name it and never need it in a page: signals that
- * wait, descriptors that are copied, the size of a terminal. Included before all else. */
+/* The machine that a page is: its verbs, and what POSIX has and WASI has not, for files that name
+ * it and never need it in a page: signals that wait, descriptors that are copied, the size of a
+ * terminal. Included before all else. */
 #ifndef IMUKIT_MACHINE_H
 #define IMUKIT_MACHINE_H
 
