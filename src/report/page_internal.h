@@ -24,10 +24,11 @@ void imki_page_heading(imki_page *page, const char *text);
 void imki_page_text(imki_page *page, const char *text);
 /* A coloured box: 0 good, 1 note, 2 warning. */
 void imki_page_verdict(imki_page *page, int level, const char *text);
-/* A table of rows x columns texts, the first row the header. */
-void imki_page_table(imki_page *page, size_t rows, size_t columns, const char *const *cells);
-/* A figure, drawn into the page. For a figure without a point to draw, a note says what is missing;
- * imki_page_take() reports any other failure. */
+/* A table of rows x columns texts, the first row the header; right: as of imk_result_table(). */
+void imki_page_table(imki_page *page, size_t rows, size_t columns, unsigned right,
+                     const char *const *cells);
+/* A figure, drawn into the page panel by panel, each with its numbers. For a figure without a point
+ * to draw, a note says what is missing. */
 void imki_page_figure(imki_page *page, const imk_figure *figure, const char *caption);
 /* An animation, drawn into the page. */
 void imki_page_animation(imki_page *page, const imk_animation *animation, const char *caption);
@@ -36,7 +37,7 @@ void imki_page_break(imki_page *page);
 /* Preformatted text, such as a model file. */
 void imki_page_code(imki_page *page, const char *text);
 /* The page as text obtained from malloc(); frees the page.
- * @return IMK_ERROR_MEMORY, and why a figure was not drawn, as of imk_figure_svg() */
+ * @return IMK_ERROR_MEMORY */
 imk_status imki_page_take(imki_page *page, char **text, size_t *size, imk_error *error);
 
 #endif
