@@ -25,6 +25,9 @@ static const char style[] =
     "h2{font-size:1.2rem;margin:2.2rem 0 .7rem;padding-bottom:.25rem;"
     "border-bottom:1px solid #dfe3e6}\n"
     ".verdict{border-left:5px solid;padding:.6rem .9rem;margin:.6rem 0;border-radius:0 4px 4px 0}\n"
+    ".judgement{font-size:1.3rem;line-height:1.4;font-weight:600;border-left:8px solid;"
+    "padding:.7rem 1rem;margin:.2rem 0 1.2rem;border-radius:0 4px 4px 0}"
+    ".care{border-color:#e69f00;background:#fdf5e2}.bad{border-color:#c1272d;background:#fbe9e9}\n"
     ".good{border-color:#009e73;background:#e9f6f1}.note{border-color:#0072b2;background:#e8f2f9}"
     ".warning{border-color:#d55e00;background:#fdf0e7}\n"
     ".table{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums;"
@@ -40,7 +43,7 @@ static const char style[] =
     "@media print{@page{margin:15mm}body{font-size:10.5pt;print-color-adjust:exact;"
     "-webkit-print-color-adjust:exact}body,main{background:#fff}"
     "main{max-width:none;padding:0;min-height:0}h1,h2{break-after:avoid}"
-    "figure,table,tr,pre,.verdict{break-inside:avoid}.table{overflow:visible}"
+    "figure,table,tr,pre,.verdict,.judgement{break-inside:avoid}.table{overflow:visible}"
     "pre{white-space:pre-wrap}th,td{padding:.2rem .5rem}.sheet{break-after:page}}\n";
 
 static void element(imki_page *page, const char *open, const char *text, const char *close)
@@ -81,6 +84,14 @@ void imki_page_verdict(imki_page *page, int level, const char *text)
 {
     static const char *const open[] = {"<p class=\"verdict good\">", "<p class=\"verdict note\">",
                                        "<p class=\"verdict warning\">"};
+    element(page, open[level < 0 ? 0 : level > 2 ? 2 : level], text, "</p>\n");
+}
+
+void imki_page_judgement(imki_page *page, int level, const char *text)
+{
+    static const char *const open[] = {"<p class=\"judgement good\">",
+                                       "<p class=\"judgement care\">",
+                                       "<p class=\"judgement bad\">"};
     element(page, open[level < 0 ? 0 : level > 2 ? 2 : level], text, "</p>\n");
 }
 
