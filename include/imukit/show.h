@@ -106,13 +106,6 @@ typedef struct imk_message {
     bool told; /**< a finding of the job, which the caller reports with imk_finding_message() */
 } imk_message;
 
-/** What a record can be used for. */
-typedef enum imk_usability {
-    IMK_USABLE = 0,       /**< no test found a fault */
-    IMK_USABLE_WITH_CARE, /**< a fault affects some terms */
-    IMK_NOT_USABLE
-} imk_usability;
-
 /** Assessment of a record: the uses it is good for, and its faults. The memory belongs to the
  *  result. */
 typedef struct imk_verdict {
