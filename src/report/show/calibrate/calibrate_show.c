@@ -227,8 +227,7 @@ static void show_data(const imk_calibrate_log *b, const imk_verdict *v, const ch
     static const char *const levels[] = {"good", "note", "warning", "useless"};
     show_inputs(b, result);
     imk_result_object(result, "result");
-    imk_result_text(result, "verdict", verdict);
-    imk_result_text(result, "level", levels[imk_verdict_level(v)]);
+    imk_result_judge(result, imk_verdict_usability(v), "%s", verdict);
     imk_result_array(result, "sentences");
     for (const imk_message *s = v->message; s < v->message + v->count; s++) {
         imk_result_object(result, NULL);
@@ -260,15 +259,11 @@ static void show_title(const imk_calibrate_log *b, imk_result *result)
     free(logs.bytes);
 }
 
-static void show_verdict(const imk_calibrate_log *b, const imk_verdict *v, const char *verdict,
-                         imk_result *result)
+static void show_verdict(const imk_verdict *v, imk_result *result)
 {
     static const int boxes[] = {0, 1, 2, 2};
-    imk_result_heading(result, "Verdict");
-    imk_result_finding(result, boxes[imk_verdict_level(v)], verdict);
     for (const imk_message *s = v->message; s < v->message + v->count; s++)
         imk_result_finding(result, boxes[s->level], s->text);
-    imk_result_heading(result, b->runs ? "From run to run" : "Parameters");
 }
 
 static void show_temperature(const imk_calibrate_log *b, bool brief, imk_result *result)
@@ -354,6 +349,5 @@ void imk_show_calibrate_log(const imk_calibrate_log *b, const imk_verdict *v, bo
     for (const imk_message *s = v->message; s < v->message + v->count; s++)
         if (s->level == IMK_FINDING_NOTE)
             imk_result_line(result, "%s.", s->text);
-    imk_result_line(result, "%s", verdict);
     imk_result_for(result, IMK_FOR_BOTH);
 }

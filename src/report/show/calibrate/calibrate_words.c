@@ -79,7 +79,7 @@ void imki_calibrate_summary(const imk_calibrate_log *b, const imk_verdict *v, ch
         snprintf(text, size, "Usable with care (%zu warning%s): %s%s.", warnings,
                  warnings == 1 ? "" : "s", known ? known : "see below", behind);
     else
-        snprintf(text, size, "Good: %s%s.", known ? known : "no test found a fault in these logs",
+        snprintf(text, size, "Usable: %s%s.", known ? known : "no test found a fault in these logs",
                  behind);
     free(precision.bytes);
 }
