@@ -293,18 +293,20 @@ static void show_holds(const imk_calibrate_record *log, imk_result *result)
                         f->too_short, f->saturated, f->not_finite);
 }
 
+static bool has_observations(const imk_calibrate_log *b)
+{
+    return b->result && !b->ferraris && b->calibration->observation_count > 0;
+}
+
 /* The rest of the page. */
 static void show_evidence(const imk_calibrate_log *b, imk_result *result)
 {
     imk_result_for(result, IMK_FOR_PAGE);
-    const bool observed = b->result && !b->ferraris && b->calibration->observation_count > 0;
-    if (observed) {
-        imki_calibrate_figure(b, result);
+    if (has_observations(b))
         imk_result_heading(result, "Observations");
-    }
     for (const imk_calibrate_record *log = b->record; log < b->record + b->count; log++)
         show_holds(log, result);
-    if (observed)
+    if (has_observations(b))
         imki_pose_table(b, result);
 }
 
@@ -317,7 +319,10 @@ void imk_show_calibrate_log(const imk_calibrate_log *b, const imk_verdict *v, bo
     show_data(b, v, verdict, result);
     show_title(b, result);
     imk_result_for(result, IMK_FOR_PAGE);
-    show_verdict(b, v, verdict, result);
+    show_verdict(v, result);
+    if (has_observations(b))
+        imki_calibrate_figure(b, result);
+    imk_result_heading(result, b->runs ? "From run to run" : "Parameters");
     imk_result_for(result, IMK_FOR_BOTH);
     for (int sensor = 1; sensor >= 0; sensor--)
         if (b->runs)
