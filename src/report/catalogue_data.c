@@ -3,8 +3,8 @@
  * four averaging times to a decade, between which the lines of a logarithmic plot are straight
  * enough. They follow from the noise of each model, on its worst axis; what rounded readings
  * add is left out, because it depends on their rate. */
-#include "page_internal.h"
 #include "markup_internal.h"
+#include "page_internal.h"
 
 #include "imukit/decimal.h"
 #include "imukit/model.h"

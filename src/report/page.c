@@ -17,7 +17,7 @@ struct imki_page {
     bool whole;            /* not only the <article> */
     bool allan_deviations; /* are drawn: those of the catalogue can be laid over them */
     const char *heading;   /* the last one, by which tables are called */
-    imk_error failure; /* of the first animation that failed */
+    imk_error failure;     /* of the first animation that failed */
 };
 
 static void element(imki_page *page, const char *open, const char *text, const char *close)

@@ -8,7 +8,7 @@
 #include "imukit/report.h"
 
 /* Script and style sheet of every page, and the hash by which a page allows the script:
- * "sha256-…". cmake/write_page_assets.cmake makes them from page_script.js and page_style.css. */
+ * "sha256-…". cmake/write_page_assets.cmake makes them from page_*.js and page_style.css. */
 extern const unsigned char imki_page_script[], imki_page_style[];
 extern const char imki_page_script_hash[];
 
