@@ -175,10 +175,18 @@ IMK_API imk_status imk_result_to_key(const imk_result *result, char **text, size
  *  @param bold,plain  escape sequences around the headers of tables; NULL: none */
 IMK_API imk_status imk_result_to_text(const imk_result *result, const char *bold, const char *plain,
                                       char **text, size_t *size);
-/** Render the display as a self-contained HTML page.
+/** Render the display as a self-contained HTML page. Its figures and tables are interactive where
+ *  scripts run, and complete where none do. It fetches nothing, and its Content-Security-Policy
+ *  forbids it to.
  *  @param error  also tells why a figure could not be drawn */
 IMK_API imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size,
                                       imk_error *error);
+/** Render the display as the <article> of that page, to be put into a page of others. That page
+ *  needs src/report/page_style.css and the parts of the script in src/report (page_*.js), whose
+ *  `imukitFigures.attach(element)` makes what is below an element interactive.
+ *  @param error  also tells why a figure could not be drawn */
+IMK_API imk_status imk_result_to_fragment(const imk_result *result, char **text, size_t *size,
+                                          imk_error *error);
 /** @} */
 
 IMK_END_C

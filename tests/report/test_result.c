@@ -255,9 +255,15 @@ static void test_page(void **state)
     imk_result_line(r, "two");
     assert_int_equal(imk_result_to_page(r, &text, &size, &error), IMK_OK);
     assert_non_null(strstr(text, "<h1>Title &lt;1&gt;</h1>"));
-    assert_non_null(strstr(text, "<p>one</p>\n<footer"));
-    assert_null(strstr(text, "two"));
+    const char *article = strstr(text, "<article"), *end = strstr(text, "<footer");
+    assert_non_null(strstr(text, "<p>one</p>\n</article>\n<footer"));
+    assert_null(strstr(article, "<p>two"));
     assert_null(strstr(text, "<p></p>"));
+    char *fragment;
+    assert_int_equal(imk_result_to_fragment(r, &fragment, &size, &error), IMK_OK);
+    assert_int_equal(size, end - article);
+    assert_memory_equal(fragment, article, size);
+    free(fragment);
     free(text);
     imk_result_free(r);
 }

@@ -115,11 +115,12 @@ static void show_data(const imk_evaluate_shown *v, imk_result *result)
 static void number(double value, double spread, char text[NUMBER])
 {
     imk_readable_value(value, spread, 4, text, NUMBER);
-    if (text[0] == '-' && text[strspn(text, "-0.")] == '\0') /* rounded to nothing */
+    if (value < 0 && text[strspn(text, "-0.")] == '\0') /* rounded to nothing */
         imk_readable_value(0, spread, 4, text, NUMBER);
 }
 
-/* "1.20 … 1.45", "above 0.1" where one end is open. */
+/* "1.20 … 1.45", "above 0.1" where one end is open, "up to 0.5" where nothing says that the figure
+ * is not 0. */
 static void add_interval(const imk_evaluate_row *row, imk_table *table)
 {
     const double scale = row->unit.scale, low = row->figure.lower / scale;
@@ -127,7 +128,7 @@ static void add_interval(const imk_evaluate_row *row, imk_table *table)
     char a[NUMBER], b[NUMBER];
     number(low, spread, a);
     number(high, spread, b);
-    if (isfinite(low) && isfinite(high))
+    if (isfinite(low) && isfinite(high) && isfinite(row->figure.value))
         imk_table_add(table, "%s … %s", a, b);
     else if (isfinite(low) && low > 0)
         imk_table_add(table, "above %s", a);
@@ -208,6 +209,25 @@ static void show_basis(const imk_evaluate_channel *c, imk_result *result)
         freedom);
 }
 
+/* Where all steps passed, resolution and threshold have no value. */
+static void show_untested_steps(const imk_evaluate_channel *c, imk_result *result)
+{
+    const imk_evaluation *r = &c->result;
+    const bool steps = isnan(r->resolution.value) && isfinite(r->smallest_step);
+    const bool inputs = isnan(r->threshold.value) && isfinite(r->smallest_input);
+    const double smallest = steps ? r->smallest_step : r->smallest_input;
+    if (steps || inputs)
+        imk_result_line(result,
+                        "Every %s that exceeds the noise gave its change, down to %.6g %s: the %s "
+                        "finer than what was tested. To find %s, test smaller steps.",
+                        steps ? "step" : "change from rest", smallest / c->reference_unit.scale,
+                        c->reference_unit.text,
+                        !inputs  ? "resolution is"
+                        : !steps ? "threshold is"
+                                 : "resolution and the threshold are",
+                        steps && inputs ? "them" : "it");
+}
+
 /* What a reader should know beside the numbers. */
 static void show_remarks(const imk_evaluate_channel *c, imk_result *result)
 {
@@ -220,11 +240,7 @@ static void show_remarks(const imk_evaluate_channel *c, imk_result *result)
     if (r->source == IMK_SCATTER_REPLICATES && r->precision.value == 0)
         imk_result_line(result, "Repeated readings are all equal: the output's resolution hides "
                                 "the noise, and the intervals do not contain it.");
-    if (r->resolution.value <= r->smallest_step)
-        imk_result_line(result,
-                        "Every step gave its change, down to %.6g %s, the smallest tested step "
-                        "that exceeds the noise: the resolution is this step or finer.",
-                        r->smallest_step / c->reference_unit.scale, c->reference_unit.text);
+    show_untested_steps(c, result);
     if (!c->settings.same_unit)
         imk_result_line(result,
                         "Readings in %s cannot be compared with a reference in %s: for the "

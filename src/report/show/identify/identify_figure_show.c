@@ -171,6 +171,7 @@ static void show_deviations(const imk_identify_shown *shown, size_t channel,
                                           .y_label = label,
                                           .x_logarithmic = true,
                                           .y_logarithmic = true,
+                                          .allan_deviation = true,
                                           .key = is_invalid(log) ? IMK_KEY_LOWER : IMK_KEY_UPPER});
     imki_begin_curve(figure, "expected spread", IMK_CURVE_BAND, BAND_COLOR);
     for (size_t k = 0; k < curve->count; k++) {
