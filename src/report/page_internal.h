@@ -3,10 +3,12 @@
 #ifndef IMUKI_PAGE_INTERNAL_H
 #define IMUKI_PAGE_INTERNAL_H
 
+#include "growing_text_internal.h"
+
 #include "imukit/report.h"
 
 /* Script and style sheet of every page, and the hash by which a page allows the script:
- * "sha256-…". cmake/write_page_assets.cmake makes them from page_script.js and page_style.css. */
+ * "sha256-…". cmake/write_page_assets.cmake makes them from page_*.js and page_style.css. */
 extern const unsigned char imki_page_script[], imki_page_style[];
 extern const char imki_page_script_hash[];
 
@@ -18,10 +20,12 @@ typedef struct imki_page imki_page;
 /* Start a page, or only the <article> of one; NULL when memory is exhausted, which every function
  * below allows. */
 imki_page *imki_page_create(const char *title, const char *subtitle, bool whole);
-/* A heading, escaped. */
+/* A heading, escaped; the text must live as long as the page. */
 void imki_page_heading(imki_page *page, const char *text);
 /* A paragraph of plain text (escaped). */
 void imki_page_text(imki_page *page, const char *text);
+/* The judgement, large: 0 usable, 1 with care, 2 not usable. */
+void imki_page_judgement(imki_page *page, int level, const char *text);
 /* A coloured box: 0 good, 1 note, 2 warning. */
 void imki_page_verdict(imki_page *page, int level, const char *text);
 /* A table of rows x columns texts, the first row the header; right: as of imk_result_table(). */
@@ -39,5 +43,10 @@ void imki_page_code(imki_page *page, const char *text);
 /* The page as text obtained from malloc(); frees the page.
  * @return IMK_ERROR_MEMORY */
 imk_status imki_page_take(imki_page *page, char **text, size_t *size, imk_error *error);
+
+/* ---- catalogue_data.c ------------------------------------------------------------------------ */
+
+/* The Allan deviations of all sensors of the catalogue [rad/s, m/s^2], as JSON. */
+void imki_catalogue_data(imki_text *out);
 
 #endif

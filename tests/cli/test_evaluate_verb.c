@@ -29,6 +29,8 @@ static void test_table(void **state)
     assert_int_equal(run("$I evaluate t.csv"), 0);
     assert_string_equal(err, "");
     assert_string_equal(out,
+                        "Usable: the scale factor is known to 158 ppm; linearity is 0.254 % of "
+                        "full scale or better.\n\n"
                         "reading: 120 readings at 21 levels in 1 run; full scale 10 deg/s; noise "
                         "from replicates (79 degrees of freedom)\n"
                         "\n"

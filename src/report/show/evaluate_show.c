@@ -93,6 +93,7 @@ static void show_data(const imk_evaluate_shown *v, imk_result *result)
     imk_result_number(result, "confidence", v->confidence);
     imk_result_end(result);
     imk_result_object(result, "result");
+    imki_judge_evaluation(v, result);
     imk_result_array(result, "channels");
     for (size_t k = 0; k < v->channel_count; k++)
         show_channel_data(&v->channel[k], result);
@@ -268,39 +269,25 @@ static void show_unit(const imk_evaluate_shown *v, imk_result *result)
         imk_table_row(table, "Log at rest\t%s", v->rest_path);
 }
 
-/* A finding for each limit that is not surely met. @return how many limits there are */
-static size_t show_limits(const char *name, const imk_evaluate_sheet *sheet, bool *met,
-                          imk_result *result)
+/* A finding for each limit that is not surely met. */
+static void show_limits(const char *name, const imk_evaluate_sheet *sheet, imk_result *result)
 {
-    size_t assessed = 0;
     for (const imk_evaluate_row *row = sheet->row; row < sheet->row + sheet->count; row++) {
         char line[300];
-        assessed += row->verdict != IMK_EVALUATE_NONE;
         if (row->verdict <= IMK_EVALUATE_MET)
             continue;
-        *met = false;
         snprintf(line, sizeof line, "%s, %s: %s (limit %s).", name, row->title,
                  imk_evaluate_verdict_text(row->verdict), row->limit);
         imk_result_finding(result, row->verdict == IMK_EVALUATE_DOUBTFUL ? 1 : 2, line);
     }
-    return assessed;
 }
 
-static void show_verdict(const imk_evaluate_shown *v, imk_result *result)
+static void show_limits_of_all(const imk_evaluate_shown *v, imk_result *result)
 {
-    size_t assessed = 0;
-    bool met = true;
-    char text[120];
-    if (v->limit_count == 0)
-        return;
-    imk_result_heading(result, "Verdict");
     for (size_t k = 0; k < v->channel_count; k++)
-        assessed += show_limits(v->channel[k].name, &v->channel[k].sheet, &met, result);
+        show_limits(v->channel[k].name, &v->channel[k].sheet, result);
     for (size_t k = 0; k < v->rest_count; k++)
-        assessed += show_limits(v->rest[k].name, &v->rest[k].sheet, &met, result);
-    snprintf(text, sizeof text, "All %zu limits are met, with their whole intervals.", assessed);
-    if (met)
-        imk_result_finding(result, 0, text);
+        show_limits(v->rest[k].name, &v->rest[k].sheet, result);
 }
 
 static void show_definitions(const imk_evaluate_shown *v, imk_result *result)
@@ -378,7 +365,7 @@ void imk_show_evaluate(const imk_evaluate_shown *v, imk_result *result)
                      v->serial ? ", serial number " : "", v->serial ? v->serial : "");
     imk_result_for(result, IMK_FOR_PAGE);
     show_unit(v, result);
-    show_verdict(v, result);
+    show_limits_of_all(v, result);
     for (size_t k = 0; k < v->channel_count; k++)
         show_channel(v, &v->channel[k], result);
     imk_result_for(result, IMK_FOR_PAGE);
