@@ -160,6 +160,7 @@ const char *EXPORT(live_describe)(void)
     imk_result_numbers(result, "angular_rate", 3, live.exposure.angular_rate);
     imk_result_numbers(result, "specific_force", 3, live.exposure.specific_force);
     imk_result_number(result, "temperature", live.exposure.temperature);
+    imk_result_count(result, "first_signal", instrument->views[0].y[0]);
     describe_signals(result, "outputs", instrument->output_count, instrument->outputs, 0);
     describe_signals(result, "signals", instrument->signal_count, instrument->signals,
                      instrument->output_count);

@@ -6,7 +6,7 @@
 function layOutInstrument(view, answer) {
   const { about } = answer;
   view.drawing = element('div', {});
-  view.charts = [makeChart(view, 'Output', about.outputs, 0), makeChart(view, 'Signal', about.signals, about.outputs.length)];
+  view.charts = [makeChart('Output', about.outputs, 0, 0), makeChart('Signal', about.signals, about.outputs.length, about.first_signal)];
   view.quantities = element('div', {});
   view.terminal = element('pre', { tabindex: 0 });
   view.root.append(
@@ -31,14 +31,14 @@ function showSchematic(view, { schematic, about }) {
 }
 
 /** A chart with a choice of what it shows. */
-function makeChart(view, label, signals, first) {
+function makeChart(label, signals, first, chosen) {
   const id = 'chart' + label;
   const nice = (name) => name.replace(/_/g, ' ');
   const now = element('output', { class: 'number' }), unit = element('span', {});
   const place = element('div', {});
   const made = { now, column: () => first + Number(select.value), input: () => first === 0 && Number(select.value) === 0 };
   const select = element('select', { id, onchange: renew },
-    signals.map(({ name, help }, i) => element('option', { value: i, title: help }, nice(name))));
+    signals.map(({ name, help }, i) => element('option', { value: i, title: help, selected: i === chosen }, nice(name))));
   function renew() {
     const signal = signals[Number(select.value)];
     if (made.chart) made.chart.end();

@@ -6,7 +6,8 @@
 //   change  [design file]                 the same; what ran goes on when there is a problem
 //   expose  [what, text]                  { problem }: "rate", "10 deg/s"
 //   pace    [seconds per second, noise]   { problem, about }
-//   restart []                            { problem }
+//   restart []                            { problem }, from power-on
+//   look    []                            { about }
 //   step    [seconds on the screen]       { rows, width, moment }
 //
 // `rows` is one Float64Array of `width` numbers a row: time, outputs, signals, in the
@@ -61,6 +62,7 @@ class LiveInstrument {
         moment: this.numbers(this.exports.live_moment(), this.moment),
       };
     }
+    if (what === 'look') return this.about();
     const problem = what === 'pace' ? this.given(this.exports.live_pace(...values)) : this.text('live_' + what, ...values);
     if (problem || what === 'expose' || what === 'restart') return { problem };
     return { problem, ...this.about() };
