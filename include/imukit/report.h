@@ -91,6 +91,8 @@ typedef struct imk_animation {
     size_t count;                          /**< >= 2 */
     const double *x, *y;                   /**< at equal intervals of time; all finite */
     bool points;                           /**< the path is drawn as separate points */
+    size_t law_count;                      /**< points of a line behind the path; 0: none */
+    const double *law_x, *law_y;           /**< all finite */
     double duration;                       /**< time of one round on the screen [s], 1 … 3600 */
     const char *clock;                     /**< true time of one round, "600 us"; "": not shown */
 } imk_animation;

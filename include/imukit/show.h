@@ -260,6 +260,7 @@ typedef struct imk_evaluate_shown {
     size_t channel_count, rest_count, limit_count;
     const imk_evaluate_channel *channel;
     const imk_evaluate_rest *rest;
+    const imk_findings *findings; /**< of the job; NULL: none */
 } imk_evaluate_shown;
 
 /** Show data, tables and test report. Anything added afterwards goes to the page only. */

@@ -186,7 +186,7 @@ imki_frame imki_panel_frame(const imk_panel *panel, bool alone);
 
 /* ---- figure_data.c --------------------------------------------------------------------------- */
 
-/* What imki_panel_svg() draws, as JSON that page_script.js draws again. */
+/* What imki_panel_svg() draws, as JSON that page_panel.js draws again. */
 void imki_panel_data(imki_text *out, const imk_panel *panel, bool alone);
 
 /* ---- all of them ----------------------------------------------------------------------------- */

@@ -14,8 +14,10 @@
 struct imki_page {
     imki_text text;
     uint32_t drawings;
-    bool whole;        /* not only what is within <main> */
-    imk_error failure; /* of the first animation that failed */
+    bool whole;            /* not only the <article> */
+    bool allan_deviations; /* are drawn: those of the catalogue can be laid over them */
+    const char *heading;   /* the last one, by which tables are called */
+    imk_error failure;     /* of the first animation that failed */
 };
 
 static void element(imki_page *page, const char *open, const char *text, const char *close)
@@ -65,6 +67,8 @@ imki_page *imki_page_create(const char *title, const char *subtitle, bool whole)
 
 void imki_page_heading(imki_page *page, const char *text)
 {
+    if (page)
+        page->heading = text;
     element(page, "<h2>", text, "</h2>\n");
 }
 
@@ -105,7 +109,8 @@ void imki_page_table(imki_page *page, size_t rows, size_t columns, unsigned righ
 {
     if (!page)
         return;
-    imki_text_put(&page->text, "<div class=\"table\"><table>\n");
+    element(page, "<div class=\"table\" role=\"group\" tabindex=\"0\" aria-label=\"",
+            page->heading ? page->heading : "Table", "\"><table>\n");
     for (size_t row = 0; row < rows; row++) {
         imki_text_put(&page->text, row == 0 ? "<thead><tr>" : row == 1 ? "<tbody><tr>" : "<tr>");
         for (size_t column = 0; column < columns; column++)
@@ -123,7 +128,7 @@ void imki_page_break(imki_page *page)
 
 void imki_page_code(imki_page *page, const char *text)
 {
-    element(page, "<pre>", text, "</pre>\n");
+    element(page, "<pre tabindex=\"0\">", text, "</pre>\n");
 }
 
 /* A drawing made here. Its identifiers get a number that follows from it and its place, so that
@@ -155,6 +160,18 @@ static void fail(imki_page *page, const imk_error *error)
         page->failure = *error;
 }
 
+/* JSON for the script; `class`: with a blank before, or "". */
+static void put_data(imki_page *page, imki_text *data, const char *class)
+{
+    size_t size;
+    char *json = imki_text_take(data, &size);
+    page->text.failed = page->text.failed || !json;
+    imki_text_add(&page->text, "<script type=\"application/json\"%s>", class);
+    imki_markup_data(&page->text, json ? json : "");
+    imki_text_put(&page->text, "</script>\n");
+    free(json);
+}
+
 /* The drawing of a panel, and its numbers for the script. */
 static void put_panel(imki_page *page, const imk_panel *panel, bool alone)
 {
@@ -162,18 +179,14 @@ static void put_panel(imki_page *page, const imk_panel *panel, bool alone)
     size_t size;
     imki_panel_svg(&drawing, panel, alone);
     imki_panel_data(&data, panel, alone);
-    char *svg = imki_text_take(&drawing, &size), *json = imki_text_take(&data, &size);
-    if (svg && json) {
-        imki_text_put(&page->text, "<div class=\"panel\">\n");
-        put_svg(page, svg);
-        imki_text_put(&page->text, "<script type=\"application/json\">");
-        imki_markup_data(&page->text, json);
-        imki_text_put(&page->text, "</script>\n</div>\n");
-    } else {
-        page->text.failed = true;
-    }
+    char *svg = imki_text_take(&drawing, &size);
+    page->text.failed = page->text.failed || !svg;
+    imki_text_put(&page->text, "<div class=\"panel\">\n");
+    put_svg(page, svg ? svg : "");
+    put_data(page, &data, "");
+    imki_text_put(&page->text, "</div>\n");
     free(svg);
-    free(json);
+    page->allan_deviations = page->allan_deviations || panel->allan_deviation;
 }
 
 void imki_page_figure(imki_page *page, const imk_figure *figure, const char *caption)
@@ -191,7 +204,7 @@ void imki_page_figure(imki_page *page, const imk_figure *figure, const char *cap
     imki_text_add(&page->text, "<figure class=\"panels columns-%zu\">\n", size.columns);
     if (!alone && figure->title[0])
         element(page, "<p class=\"name\">", figure->title, "</p>\n");
-    imki_text_put(&page->text, "<div class=\"grid\">\n");
+    imki_text_put(&page->text, "<div class=\"panes\">\n");
     for (size_t p = 0; p < figure->panel_count; p++)
         put_panel(page, &figure->panels[p], alone);
     imki_text_put(&page->text, "</div>\n");
@@ -226,6 +239,11 @@ imk_status imki_page_take(imki_page *page, char **text, size_t *size, imk_error 
 {
     if (!page)
         return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
+    if (page->allan_deviations) {
+        imki_text catalogue = {.bytes = NULL};
+        imki_catalogue_data(&catalogue);
+        put_data(page, &catalogue, " class=\"catalogue\"");
+    }
     imki_text_put(&page->text, "</article>\n");
     if (page->whole)
         put_tail(page);

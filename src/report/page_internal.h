@@ -3,10 +3,12 @@
 #ifndef IMUKI_PAGE_INTERNAL_H
 #define IMUKI_PAGE_INTERNAL_H
 
+#include "growing_text_internal.h"
+
 #include "imukit/report.h"
 
 /* Script and style sheet of every page, and the hash by which a page allows the script:
- * "sha256-…". cmake/write_page_assets.cmake makes them from page_script.js and page_style.css. */
+ * "sha256-…". cmake/write_page_assets.cmake makes them from page_*.js and page_style.css. */
 extern const unsigned char imki_page_script[], imki_page_style[];
 extern const char imki_page_script_hash[];
 
@@ -18,7 +20,7 @@ typedef struct imki_page imki_page;
 /* Start a page, or only the <article> of one; NULL when memory is exhausted, which every function
  * below allows. */
 imki_page *imki_page_create(const char *title, const char *subtitle, bool whole);
-/* A heading, escaped. */
+/* A heading, escaped; the text must live as long as the page. */
 void imki_page_heading(imki_page *page, const char *text);
 /* A paragraph of plain text (escaped). */
 void imki_page_text(imki_page *page, const char *text);
@@ -41,5 +43,10 @@ void imki_page_code(imki_page *page, const char *text);
 /* The page as text obtained from malloc(); frees the page.
  * @return IMK_ERROR_MEMORY */
 imk_status imki_page_take(imki_page *page, char **text, size_t *size, imk_error *error);
+
+/* ---- catalogue_data.c ------------------------------------------------------------------------ */
+
+/* The Allan deviations of all sensors of the catalogue [rad/s, m/s^2], as JSON. */
+void imki_catalogue_data(imki_text *out);
 
 #endif
