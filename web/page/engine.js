@@ -16,12 +16,15 @@ class Engine {
     this.next = 1;
   }
 
+  /** Begin the worker; it has the module when this is done, whoever began it. */
   async start() {
-    if (this.worker) return;
-    this.worker = new Worker(workerAddress());
-    this.worker.onmessage = ({ data }) => this.answer(data);
-    this.worker.onerror = (event) => this.fail(event.message || 'the worker has stopped');
-    this.worker.postMessage({ module: await moduleBytes() });
+    if (!this.worker) {
+      const worker = (this.worker = new Worker(workerAddress()));
+      worker.onmessage = ({ data }) => this.answer(data);
+      worker.onerror = (event) => this.fail(event.message || 'the worker has stopped');
+      this.ready = moduleBytes().then((module) => worker.postMessage({ module }));
+    }
+    await this.ready;
   }
 
   /** Do a verb.
