@@ -3,7 +3,8 @@
 #
 #     cmake -DOUTPUT=page_assets.c -P cmake/write_page_assets.cmake
 #
-# What it defines is declared in src/report/page_internal.h.
+# What it defines is declared in src/report/page_internal.h. The whole script is also left beside it,
+# as page_script.js.
 set(folder ${CMAKE_CURRENT_LIST_DIR}/../src/report)
 
 # The bytes of a file as the elements of an array that ends with a zero.
@@ -41,13 +42,21 @@ function(to_base64 digits result)
   set(${result} "${text}" PARENT_SCOPE)
 endfunction()
 
-read_bytes(${folder}/page_script.js script)
+# Each part uses those before it.
+get_filename_component(script_file ${OUTPUT} DIRECTORY)
+set(script_file ${script_file}/page_script.js)
+file(WRITE ${script_file} "\n")
+foreach(part elements axes panel overlay figures)
+  file(READ ${folder}/page_${part}.js text)
+  file(APPEND ${script_file} "${text}")
+endforeach()
+read_bytes(${script_file} script)
 read_bytes(${folder}/page_style.css style)
-file(SHA256 ${folder}/page_script.js hash)
+file(SHA256 ${script_file} hash)
 to_base64(${hash} hash)
 file(WRITE ${OUTPUT}
      "/* SPDX-License-Identifier: Apache-2.0 */
-/* Script and style sheet of pages, from page_script.js and page_style.css. */
+/* Script and style sheet of pages, from page_*.js and page_style.css. */
 #include \"report/page_internal.h\"
 
 const unsigned char imki_page_script[] = {\n${script}};

@@ -64,6 +64,8 @@ typedef struct imk_panel {
     imk_key_place key;
     const char
         *note; /**< lines below the label of the x axis, separated by line feeds; NULL: none */
+    bool allan_deviation; /**< of a rate against averaging time: a page can lay the deviations of
+                             other sensors over it */
 } imk_panel;
 
 /** Panels on a grid, row by row. Panels are larger if regions have labels. The title is drawn only

@@ -15,7 +15,7 @@ static void put_table(imki_page *page, const imk_table *table, imki_arena *scrat
         cells[k] = c < row->count ? row->cells[c] : "";
     }
     if (cells && count > 0)
-        imki_page_table(page, table->rows, table->columns, cells);
+        imki_page_table(page, table->rows, table->columns, table->right, cells);
 }
 
 static void put_block(imki_page *page, const imki_block *block, imki_arena *scratch)

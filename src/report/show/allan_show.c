@@ -209,7 +209,8 @@ static void show_panel(const imk_allan_log *a, imk_channel_kind kind, bool time,
                                          .x_label = "averaging time [s]",
                                          .y_label = text,
                                          .x_logarithmic = true,
-                                         .y_logarithmic = true};
+                                         .y_logarithmic = true,
+                                         .allan_deviation = !time && !a->settings.phase};
                 imk_figure_panel(figure, &panel);
             }
             snprintf(text, sizeof text, "%.50s%s%s", column->name, alone ? "" : " ",

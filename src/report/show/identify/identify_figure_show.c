@@ -62,7 +62,8 @@ static void show_deviations(const imk_identify_shown *shown, size_t channel,
                                           .x_label = "averaging time [s]",
                                           .y_label = label,
                                           .x_logarithmic = true,
-                                          .y_logarithmic = true});
+                                          .y_logarithmic = true,
+                                          .allan_deviation = true});
     imki_begin_curve(figure, "expected spread", IMK_CURVE_BAND, BAND_COLOR);
     for (size_t k = 0; k < curve->count; k++) {
         /* Under the model the measured variance is the model's times chi^2/edf. */
