@@ -36,8 +36,8 @@ typedef struct imk_curve {
  *  upper right). */
 typedef struct imk_region {
     const char *label;
-    int color; /**< index into the palette */
-    double x_low, x_high, y_low, y_high;
+    int color;                           /**< index into the palette */
+    double x_low, x_high, y_low, y_high; /**< infinite: to the frame */
     bool label_right;
     bool dashed; /**< outline of dashes, for limits that are not certain */
 } imk_region;

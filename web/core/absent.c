@@ -117,13 +117,14 @@ int imki_open_nameless(void)
     return -1;
 }
 
-/* There are no links and no working folder: a name is what it says. */
+/* There are no links, and one folder: a name is what it says. */
 char *realpath(const char *path, char *resolved)
 {
-    (void)resolved;
+    while (path[0] == '/' || (path[0] == '.' && path[1] == '/'))
+        path++;
     const size_t size = strlen(path) + 1;
-    char *copy = malloc(size);
-    return copy ? memcpy(copy, path, size) : NULL;
+    char *place = resolved ? resolved : malloc(size);
+    return place ? memcpy(place, path, size) : NULL;
 }
 
 /* One process, and no permissions. */
