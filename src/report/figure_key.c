@@ -49,7 +49,7 @@ static void put_sample(imki_text *out, const imk_curve *curve, double x, double 
     else if (curve->style == IMK_CURVE_MARKS)
         imki_put_diamond(out, x + sample / 2, y);
     else if (curve->style == IMK_CURVE_POINTS)
-        imki_text_add(out, "M%ld %ldh1", imki_tenths(x + sample / 2), imki_tenths(y));
+        imki_text_add(out, "M%ld %ldh0", imki_tenths(x + sample / 2), imki_tenths(y));
     else
         imki_text_add(out, "M%ld %ldh%ld", imki_tenths(x), imki_tenths(y), imki_tenths(sample));
     imki_text_put(out, "\"/>\n");
