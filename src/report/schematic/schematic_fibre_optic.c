@@ -85,7 +85,7 @@ static const imk_schematic_quantity quantities[] = {
 static const imk_schematic_slider sliders[] = {
     {"rate", -60, 60, "deg/s", false},        {"acceleration", -10, 10, "g", false},
     {"temperature", -40, 70, "degC", false},  {"coil.length", 200, 1000, NULL, true},
-    {"coil.diameter", 100, 320, NULL, false}, {"modulator.depth", 60, 150, NULL, false},
+    {"coil.diameter", 100, 320, NULL, false}, {"modulator.depth", 60, 130, NULL, false},
     {"loop.gain", 0.02, 0.8, NULL, true},
 };
 
