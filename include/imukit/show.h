@@ -106,13 +106,6 @@ typedef struct imk_message {
     bool told; /**< a finding of the job, which the caller reports with imk_finding_message() */
 } imk_message;
 
-/** What a record can be used for. */
-typedef enum imk_usability {
-    IMK_USABLE = 0,       /**< no test found a fault */
-    IMK_USABLE_WITH_CARE, /**< a fault affects some terms */
-    IMK_NOT_USABLE
-} imk_usability;
-
 /** Assessment of a record: the uses it is good for, and its faults. The memory belongs to the
  *  result. */
 typedef struct imk_verdict {
@@ -267,6 +260,7 @@ typedef struct imk_evaluate_shown {
     size_t channel_count, rest_count, limit_count;
     const imk_evaluate_channel *channel;
     const imk_evaluate_rest *rest;
+    const imk_findings *findings; /**< of the job; NULL: none */
 } imk_evaluate_shown;
 
 /** Show data, tables and test report. Anything added afterwards goes to the page only. */

@@ -6,12 +6,13 @@
 #include "figure_internal.h"
 
 /* Colours that readers with any colour vision can tell apart [OKABE2008], and two greys. */
-static const char *const palette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                      "#e69f00", "#56b4e9", "#333333", "#999999"};
-enum { PALETTE_SIZE = sizeof palette / sizeof palette[0] };
+static const char *const palette[IMKI_PALETTE_SIZE] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                       "#e69f00", "#56b4e9", "#333333", "#999999"};
 
 enum { PANEL_WIDTH = 480, PANEL_HEIGHT = 380, SINGLE_WIDTH = 860, SINGLE_HEIGHT = 560 };
 enum { LARGE_WIDTH = 800, LARGE_HEIGHT = 540, HEAD = 40 };
+/* On a page panels can be as narrow as a third of it, where letters must still be read. */
+enum { PAGE_WIDTH = 430, PAGE_HEIGHT = 350, PAGE_LARGE_WIDTH = 640, PAGE_LARGE_HEIGHT = 470 };
 
 /* Up to this ratio an axis has labels at 1, 2 and 5. */
 static const double few_decades = 300;
@@ -30,7 +31,7 @@ typedef struct span {
 
 const char *imki_color(int index)
 {
-    return palette[(unsigned)index % PALETTE_SIZE];
+    return palette[(unsigned)index % IMKI_PALETTE_SIZE];
 }
 
 bool imki_drawable(double value, bool logarithmic)
@@ -186,4 +187,13 @@ imki_figure_size imki_figure_measure(const imk_figure *figure)
     const bool map = is_map(figure);
     return (imki_figure_size){columns, rows, (int)columns * (map ? LARGE_WIDTH : PANEL_WIDTH),
                               (int)rows * (map ? LARGE_HEIGHT : PANEL_HEIGHT) + HEAD, HEAD};
+}
+
+imki_figure_size imki_page_panel_measure(const imk_panel *panel, bool alone)
+{
+    if (alone)
+        return (imki_figure_size){1, 1, SINGLE_WIDTH, SINGLE_HEIGHT, 0};
+    return panel->region_count > 0
+               ? (imki_figure_size){1, 1, PAGE_LARGE_WIDTH, PAGE_LARGE_HEIGHT, 0}
+               : (imki_figure_size){1, 1, PAGE_WIDTH, PAGE_HEIGHT, 0};
 }

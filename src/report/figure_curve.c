@@ -48,12 +48,6 @@ static void pen_line(pen *p, point to)
 
 /* ---- points of a line, few in a column ------------------------------------------------------- */
 
-/* Takes the points that are kept, in order; `begins` is true for the first point and after a
- * gap. */
-typedef struct visitor {
-    void (*visit)(struct visitor *v, point p, bool begins);
-} visitor;
-
 enum { FIRST, LOWEST, HIGHEST, LAST, KEPT };
 
 typedef struct column {
@@ -63,17 +57,17 @@ typedef struct column {
     size_t index[KEPT];
 } column;
 
-static void column_flush(column *c, visitor *v)
+static void column_flush(column *c, imki_visitor *v)
 {
     if (!c->filled)
         return;
     const bool low_first = c->index[LOWEST] < c->index[HIGHEST];
     const int order[KEPT] = {FIRST, low_first ? LOWEST : HIGHEST, low_first ? HIGHEST : LOWEST,
                              LAST};
-    v->visit(v, c->at[FIRST], c->begins);
-    for (int i = 1; i < KEPT; i++)
-        if (c->index[order[i]] != c->index[order[i - 1]])
-            v->visit(v, c->at[order[i]], false);
+    for (int i = 0; i < KEPT; i++)
+        if (i == 0 || c->index[order[i]] != c->index[order[i - 1]])
+            v->visit(v, c->index[order[i]], c->at[order[i]].x, c->at[order[i]].y,
+                     i == 0 && c->begins);
     c->filled = false;
 }
 
@@ -91,7 +85,7 @@ static void column_add(column *c, point p, size_t index)
     c->index[LAST] = index;
 }
 
-static void walk_line(const imki_frame *f, const imk_curve *curve, visitor *v)
+void imki_line_walk(const imki_frame *f, const imk_curve *curve, imki_visitor *v)
 {
     column c = {.filled = false};
     bool begins = true;
@@ -115,21 +109,29 @@ static void walk_line(const imki_frame *f, const imk_curve *curve, visitor *v)
 }
 
 typedef struct counter {
-    visitor visitor;
+    imki_visitor visitor;
     size_t count;
 } counter;
 
-static void count_point(visitor *v, point p, bool begins)
+static void count_point(imki_visitor *v, size_t index, double x, double y, bool begins)
 {
-    (void)p;
+    (void)index;
+    (void)x;
+    (void)y;
     (void)begins;
     ((counter *)v)->count++;
 }
 
-/* Each so-manieth point is drawn. */
-static size_t stride_for(size_t count)
+size_t imki_stride_for(size_t count)
 {
     return (count + IMKI_CURVE_POINTS_MAX - 1) / IMKI_CURVE_POINTS_MAX + (count == 0);
+}
+
+size_t imki_line_stride(const imki_frame *frame, const imk_curve *curve)
+{
+    counter c = {{count_point}, 0};
+    imki_line_walk(frame, curve, &c.visitor);
+    return imki_stride_for(c.count);
 }
 
 /* ---- lines ----------------------------------------------------------------------------------- */
@@ -159,7 +161,7 @@ static bool clip(const imki_box *b, point *from, point *to)
 }
 
 typedef struct line_drawer {
-    visitor visitor;
+    imki_visitor visitor;
     pen pen;
     const imki_frame *frame;
     imki_box box;
@@ -178,9 +180,11 @@ static void finish_run(line_drawer *d)
     d->has_before = false;
 }
 
-static void draw_segment(visitor *v, point p, bool begins)
+static void draw_segment(imki_visitor *v, size_t index, double x, double y, bool begins)
 {
     line_drawer *d = (line_drawer *)v;
+    const point p = {x, y};
+    (void)index;
     if (begins)
         finish_run(d);
     if (d->index++ % d->stride != 0)
@@ -200,14 +204,12 @@ static void draw_segment(visitor *v, point p, bool begins)
 
 static void draw_line(imki_text *out, const imki_frame *f, const imk_curve *curve)
 {
-    counter c = {{count_point}, 0};
-    walk_line(f, curve, &c.visitor);
     line_drawer d = {.visitor = {draw_segment},
                      .pen = {.out = out},
                      .frame = f,
                      .box = box_of(f),
-                     .stride = stride_for(c.count)};
-    walk_line(f, curve, &d.visitor);
+                     .stride = imki_line_stride(f, curve)};
+    imki_line_walk(f, curve, &d.visitor);
     finish_run(&d);
 }
 
@@ -277,8 +279,8 @@ static void draw_band(imki_text *out, const imki_frame *f, const imk_curve *curv
     if (!curve->lower || !curve->upper)
         return;
     walk_band(f, curve, &b, NULL);
-    b = (band){.stride = stride_for(b.index),
-               .slice = malloc((b.index / stride_for(b.index) + 1) * sizeof *b.slice)};
+    b = (band){.stride = imki_stride_for(b.index),
+               .slice = malloc((b.index / imki_stride_for(b.index) + 1) * sizeof *b.slice)};
     if (b.slice)
         walk_band(f, curve, &b, out);
     else
@@ -343,25 +345,26 @@ void imki_curve_draw(imki_text *out, const imki_frame *frame, const imk_curve *c
 /* ---- what a key would hide ------------------------------------------------------------------- */
 
 typedef struct toucher {
-    visitor visitor;
+    imki_visitor visitor;
     const imki_box *box;
     point before;
     size_t count;
 } toucher;
 
-static void touch(visitor *v, point p, bool begins)
+static void touch(imki_visitor *v, size_t index, double x, double y, bool begins)
 {
     toucher *t = (toucher *)v;
-    point from = begins ? p : t->before, to = p;
+    point from = begins ? (point){x, y} : t->before, to = {x, y};
+    (void)index;
     t->count += clip(t->box, &from, &to);
-    t->before = p;
+    t->before = (point){x, y};
 }
 
 size_t imki_curve_touches(const imki_frame *frame, const imk_curve *curve, const imki_box *box)
 {
     toucher t = {.visitor = {touch}, .box = box};
     if (curve->style == IMK_CURVE_LINE || curve->style == IMK_CURVE_DASHES) {
-        walk_line(frame, curve, &t.visitor);
+        imki_line_walk(frame, curve, &t.visitor);
         return t.count;
     }
     for (size_t i = 0; i < curve->count; i++) {
@@ -370,12 +373,12 @@ size_t imki_curve_touches(const imki_frame *frame, const imk_curve *curve, const
                             !imki_curve_is_filled(curve) &&
                             imki_drawable(curve->y[i], frame->y.logarithmic);
         if (marked) {
-            const point p = {imki_frame_x(frame, curve->x[i]), imki_frame_y(frame, curve->y[i])};
-            touch(&t.visitor, p, true);
+            const double x = imki_frame_x(frame, curve->x[i]);
+            touch(&t.visitor, i, x, imki_frame_y(frame, curve->y[i]), true);
         }
         if (imki_slice_make(frame, curve, i, &s)) {
             t.before = (point){s.x, s.top};
-            touch(&t.visitor, (point){s.x, s.bottom}, false);
+            touch(&t.visitor, i, s.x, s.bottom, false);
         }
     }
     return t.count;

@@ -37,6 +37,7 @@ double imki_axis_place(const imki_axis *axis, double value);
 bool imki_curve_is_filled(const imk_curve *curve);
 
 /* The colour of an index, "#0072b2". */
+enum { IMKI_PALETTE_SIZE = 8 };
 const char *imki_color(int index);
 
 typedef struct imki_figure_size {
@@ -44,6 +45,8 @@ typedef struct imki_figure_size {
     int width, height, head; /* of all; head is above the panels */
 } imki_figure_size;
 imki_figure_size imki_figure_measure(const imk_figure *figure);
+/* Of a panel that is a drawing of its own on a page: large if its figure has no other. */
+imki_figure_size imki_page_panel_measure(const imk_panel *panel, bool alone);
 
 /* ---- figure_ticks.c -------------------------------------------------------------------------- */
 
@@ -108,6 +111,19 @@ static inline long imki_column(double x)
     return (long)floor(2 * x);
 }
 
+/* Takes the points of a curve that are drawn, in order. `begins`: the first, or the first after a
+ * gap. */
+typedef struct imki_visitor {
+    void (*visit)(struct imki_visitor *v, size_t index, double x, double y, bool begins);
+} imki_visitor;
+
+/* Of the points of a line that share half of a pixel's column: the first, the lowest, the highest
+ * and the last. */
+void imki_line_walk(const imki_frame *frame, const imk_curve *curve, imki_visitor *v);
+/* Of so many points each so-manieth is drawn; and of those of a line. */
+size_t imki_stride_for(size_t count);
+size_t imki_line_stride(const imki_frame *frame, const imk_curve *curve);
+
 /* The path of a curve, which is within the frame. However many points a curve has, at most
  * IMKI_CURVE_POINTS_MAX are drawn, of 8 to 32 bytes. */
 enum { IMKI_CURVE_POINTS_MAX = 20000 };
@@ -120,6 +136,10 @@ size_t imki_curve_touches(const imki_frame *frame, const imk_curve *curve, const
 void imki_curve_style(imki_text *out, const imk_curve *curve);
 
 /* ---- figure_points.c ------------------------------------------------------------------------- */
+
+/* The points of which one is drawn per pixel, or per some pixels if there are too many.
+ * @return false: memory is exhausted */
+bool imki_points_walk(const imki_frame *frame, const imk_curve *curve, imki_visitor *v);
 
 /* In the data of a path: the marks of a curve, their error bars, and a single large mark. */
 void imki_points_draw(imki_text *out, const imki_frame *frame, const imk_curve *curve);
@@ -156,6 +176,18 @@ imki_box imki_region_place(imki_placer *placer, const imki_frame *frame, const i
 
 void imki_regions_draw(imki_text *out, const imki_frame *frame, const imk_panel *panel);
 void imki_region_labels_draw(imki_text *out, const imki_frame *frame, const imk_panel *panel);
+
+/* ---- figure_svg.c ---------------------------------------------------------------------------- */
+
+/* Draw one panel on a page: large if it is the only one of its figure. */
+void imki_panel_svg(imki_text *out, const imk_panel *panel, bool alone);
+/* The frame of its axes. */
+imki_frame imki_panel_frame(const imk_panel *panel, bool alone);
+
+/* ---- figure_data.c --------------------------------------------------------------------------- */
+
+/* What imki_panel_svg() draws, as JSON that page_panel.js draws again. */
+void imki_panel_data(imki_text *out, const imk_panel *panel, bool alone);
 
 /* ---- all of them ----------------------------------------------------------------------------- */
 

@@ -41,8 +41,8 @@ void imki_put_diamond(imki_text *out, double x, double y)
     imki_text_add(out, "M%ld %ldl80 80l-80 80l-80-80z", imki_tenths(x), imki_tenths(y - 8));
 }
 
-/* @return how many marks there are; they are written when `out` is not NULL */
-static size_t walk_points(imki_text *out, const imki_frame *f, const imk_curve *curve, grid *g)
+/* @return how many marks there are; they are visited when `v` is not NULL */
+static size_t walk_points(const imki_frame *f, const imk_curve *curve, grid *g, imki_visitor *v)
 {
     size_t count = 0;
     memset(g->taken, 0, g->columns * g->rows / 8 + 1);
@@ -53,26 +53,47 @@ static size_t walk_points(imki_text *out, const imki_frame *f, const imk_curve *
         const double x = imki_frame_x(f, curve->x[i]), y = imki_frame_y(f, curve->y[i]);
         if (!imki_frame_has(f, x, y) || !grid_take(g, f, x, y))
             continue;
+        if (v)
+            v->visit(v, i, x, y, count == 0);
         count++;
-        if (out && curve->style == IMK_CURVE_MARKS)
-            imki_put_diamond(out, x, y);
-        else if (out)
-            imki_text_add(out, "M%ld %ldh0", imki_tenths(x), imki_tenths(y));
     }
     return count;
 }
 
-void imki_points_draw(imki_text *out, const imki_frame *f, const imk_curve *curve)
+bool imki_points_walk(const imki_frame *f, const imk_curve *curve, imki_visitor *v)
 {
     grid g;
-    if (!grid_make(&g, f)) {
-        out->failed = true;
-        return;
-    }
-    while (walk_points(NULL, f, curve, &g) > IMKI_CURVE_POINTS_MAX)
+    if (!grid_make(&g, f))
+        return false;
+    while (walk_points(f, curve, &g, NULL) > IMKI_CURVE_POINTS_MAX)
         g.cell *= 2;
-    walk_points(out, f, curve, &g);
+    walk_points(f, curve, &g, v);
     free(g.taken);
+    return true;
+}
+
+typedef struct point_drawer {
+    imki_visitor visitor;
+    imki_text *out;
+    bool diamonds;
+} point_drawer;
+
+static void draw_point(imki_visitor *v, size_t index, double x, double y, bool begins)
+{
+    const point_drawer *d = (const point_drawer *)v;
+    (void)index;
+    (void)begins;
+    if (d->diamonds)
+        imki_put_diamond(d->out, x, y);
+    else
+        imki_text_add(d->out, "M%ld %ldh0", imki_tenths(x), imki_tenths(y));
+}
+
+void imki_points_draw(imki_text *out, const imki_frame *f, const imk_curve *curve)
+{
+    point_drawer d = {{draw_point}, out, curve->style == IMK_CURVE_MARKS};
+    if (!imki_points_walk(f, curve, &d.visitor))
+        out->failed = true;
 }
 
 static void put_bar(imki_text *out, const imki_slice *s)

@@ -384,22 +384,22 @@ static void put_panel(imki_text *out, const sheet *s, size_t number)
 
 /* ---- all of it ------------------------------------------------------------------------------- */
 
-static void put_figure(imki_text *out, const sheet *s)
+static void put_head(imki_text *out, const imki_figure_size *z, const char *name, const char *more)
 {
-    const imki_figure_size *z = &s->size;
-    const char *title = s->single ? s->figure->panels[0].title : s->figure->title;
     imki_text_add(out,
                   "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
                   "viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"",
                   z->width, z->height, 10 * z->width, 10 * z->height);
-    imki_markup_escape(out, title);
+    imki_markup_escape(out, name);
+    imki_markup_escape(out, more);
     imki_text_add(out,
                   "\" font-family=\"'DejaVu Sans',Verdana,sans-serif\" fill=\"#333\">\n"
                   "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
                   10 * z->width, 10 * z->height);
-    if (!s->single)
-        imki_svg_line(out, z->width / 2.0, 24, IMKI_MIDDLE, TITLE_SIZE + 1, z->width - 20.0, "",
-                      title);
+}
+
+static void put_panels(imki_text *out, const sheet *s)
+{
     lay_out(s);
     for (size_t p = 0; p < s->figure->panel_count; p++)
         put_panel(out, s, p);
@@ -417,14 +417,51 @@ imk_status imk_figure_svg(const imk_figure *figure, char **svg, size_t *size, im
                .single = figure->panel_count == 1,
                .tick_size = figure->panel_count == 1 ? 12 : 10,
                .layout = calloc(figure->panel_count, sizeof *s.layout)};
-    if (s.layout)
-        put_figure(&text, &s);
-    else
+    if (s.layout) {
+        put_head(&text, &s.size, s.single ? figure->panels[0].title : figure->title, "");
+        if (!s.single)
+            imki_svg_line(&text, s.size.width / 2.0, 24, IMKI_MIDDLE, TITLE_SIZE + 1,
+                          s.size.width - 20.0, "", figure->title);
+        put_panels(&text, &s);
+    } else {
         text.failed = true;
+    }
     free(s.layout);
     char *drawn = imki_text_take(&text, size);
     if (!drawn)
         return imk_error_set(error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
     *svg = drawn;
     return IMK_OK;
+}
+
+/* ---- one panel of it, on a page -------------------------------------------------------------- */
+
+static sheet page_sheet(const imk_figure *figure, layout *l, bool alone)
+{
+    return (sheet){.figure = figure,
+                   .size = imki_page_panel_measure(figure->panels, alone),
+                   .single = alone,
+                   .tick_size = alone ? 12 : 10,
+                   .layout = l};
+}
+
+void imki_panel_svg(imki_text *out, const imk_panel *panel, bool alone)
+{
+    const imk_figure figure = {"", 1, 1, panel};
+    layout l = {.left = 0};
+    const sheet s = page_sheet(&figure, &l, alone);
+    char axes[300];
+    snprintf(axes, sizeof axes, "%s%.140s against %.140s", panel->title[0] ? ": " : "",
+             panel->y_label, panel->x_label);
+    put_head(out, &s.size, panel->title, axes);
+    put_panels(out, &s);
+}
+
+imki_frame imki_panel_frame(const imk_panel *panel, bool alone)
+{
+    const imk_figure figure = {"", 1, 1, panel};
+    layout l = {.left = 0};
+    const sheet s = page_sheet(&figure, &l, alone);
+    lay_out(&s);
+    return l.frame;
 }

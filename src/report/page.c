@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A self-contained HTML page: styles and drawings inside, nothing fetched, every text escaped. */
+/* A self-contained HTML page: style, script and drawings inside, nothing fetched, every text
+ * escaped. */
+#include "figure_internal.h"
 #include "markup_internal.h"
 #include "page_internal.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,38 +13,12 @@
  * callers need no check after every paragraph. */
 struct imki_page {
     imki_text text;
-    int figures;
-    imk_error failure; /* of the first drawing that failed */
+    uint32_t drawings;
+    bool whole;            /* not only the <article> */
+    bool allan_deviations; /* are drawn: those of the catalogue can be laid over them */
+    const char *heading;   /* the last one, by which tables are called */
+    imk_error failure;     /* of the first animation that failed */
 };
-
-static const char style[] =
-    ":root{color-scheme:light}*{box-sizing:border-box}\n"
-    "body{margin:0;background:#f5f6f7;color:#1d2327;"
-    "font:16px/1.55 system-ui,-apple-system,'Segoe UI',Roboto,'DejaVu Sans',sans-serif}\n"
-    "main{max-width:1100px;margin:0 auto;padding:2.2rem 1.4rem 4rem;background:#fff;"
-    "min-height:100vh}\n"
-    "h1{font-size:1.75rem;line-height:1.25;margin:0}"
-    ".subtitle{color:#5b6770;margin:.3rem 0 1.4rem}\n"
-    "h2{font-size:1.2rem;margin:2.2rem 0 .7rem;padding-bottom:.25rem;"
-    "border-bottom:1px solid #dfe3e6}\n"
-    ".verdict{border-left:5px solid;padding:.6rem .9rem;margin:.6rem 0;border-radius:0 4px 4px 0}\n"
-    ".good{border-color:#009e73;background:#e9f6f1}.note{border-color:#0072b2;background:#e8f2f9}"
-    ".warning{border-color:#d55e00;background:#fdf0e7}\n"
-    ".table{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums;"
-    "font-size:.92rem;margin:.4rem 0}\n"
-    "th,td{padding:.35rem .8rem;text-align:left;vertical-align:top;"
-    "border-bottom:1px solid #e6e9eb;white-space:pre-line}\n"
-    "th{background:#f0f2f4}td:first-child{font-weight:600}\n"
-    "pre{background:#f6f7f8;border:1px solid #e1e5e8;border-radius:4px;padding:.8rem 1rem;"
-    "overflow-x:auto;font:.85rem/1.5 ui-monospace,'DejaVu Sans Mono',Menlo,Consolas,monospace}\n"
-    "figure{margin:1rem 0}figure svg{width:100%;height:auto}"
-    "figcaption{color:#5b6770;font-size:.9rem}\n"
-    "footer{margin-top:3rem;color:#7a858d;font-size:.82rem}\n"
-    "@media print{@page{margin:15mm}body{font-size:10.5pt;print-color-adjust:exact;"
-    "-webkit-print-color-adjust:exact}body,main{background:#fff}"
-    "main{max-width:none;padding:0;min-height:0}h1,h2{break-after:avoid}"
-    "figure,table,tr,pre,.verdict{break-inside:avoid}.table{overflow:visible}"
-    "pre{white-space:pre-wrap}th,td{padding:.2rem .5rem}.sheet{break-after:page}}\n";
 
 static void element(imki_page *page, const char *open, const char *text, const char *close)
 {
@@ -52,23 +29,46 @@ static void element(imki_page *page, const char *open, const char *text, const c
     imki_text_put(&page->text, close);
 }
 
-imki_page *imki_page_create(const char *title, const char *subtitle)
+/* Up to the body. Nothing but the script below may run, and nothing can be fetched. */
+static void put_head(imki_page *page, const char *title)
+{
+    imki_text_add(&page->text,
+                  "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                  "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+                  "style-src 'unsafe-inline'; script-src '%s'; img-src data:; base-uri 'none'; "
+                  "form-action 'none'\">\n"
+                  "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n",
+                  imki_page_script_hash);
+    element(page, "<title>", title, "</title>\n<style>\n");
+    imki_text_put(&page->text, (const char *)imki_page_style);
+    imki_text_put(&page->text, "</style>\n</head>\n<body class=\"imukit-page\">\n<main>\n");
+}
+
+static void put_tail(imki_page *page)
+{
+    imki_text_put(&page->text,
+                  "<footer>Made by imukit " IMK_VERSION ".</footer>\n</main>\n<script>");
+    imki_text_put(&page->text, (const char *)imki_page_script);
+    imki_text_put(&page->text, "</script>\n</body>\n</html>\n");
+}
+
+imki_page *imki_page_create(const char *title, const char *subtitle, bool whole)
 {
     imki_page *page = calloc(1, sizeof *page);
     if (!page)
         return NULL;
-    element(page,
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
-            title, "</title>\n<style>\n");
-    imki_text_put(&page->text, style);
-    element(page, "</style>\n</head>\n<body>\n<main>\n<h1>", title, "</h1>\n");
+    page->whole = whole;
+    if (whole)
+        put_head(page, title);
+    element(page, "<article class=\"imukit\">\n<h1>", title, "</h1>\n");
     element(page, "<p class=\"subtitle\">", subtitle, "</p>\n");
     return page;
 }
 
 void imki_page_heading(imki_page *page, const char *text)
 {
+    if (page)
+        page->heading = text;
     element(page, "<h2>", text, "</h2>\n");
 }
 
@@ -84,19 +84,41 @@ void imki_page_verdict(imki_page *page, int level, const char *text)
     element(page, open[level < 0 ? 0 : level > 2 ? 2 : level], text, "</p>\n");
 }
 
-void imki_page_table(imki_page *page, size_t rows, size_t columns, const char *const *cells)
+void imki_page_judgement(imki_page *page, int level, const char *text)
+{
+    static const char *const open[] = {"<p class=\"judgement good\">",
+                                       "<p class=\"judgement care\">",
+                                       "<p class=\"judgement bad\">"};
+    element(page, open[level < 0 ? 0 : level > 2 ? 2 : level], text, "</p>\n");
+}
+
+/* The first column names the rows. An empty corner is no header. */
+static void put_cell(imki_page *page, const char *cell, size_t row, size_t column, bool right)
+{
+    const char *side = right ? " class=\"right\"" : "";
+    const bool header = (row == 0 || column == 0) && cell[0];
+    if (header)
+        imki_text_add(&page->text, "<th scope=\"%s\"%s>", row == 0 ? "col" : "row", side);
+    else
+        imki_text_add(&page->text, "<td%s>", side);
+    element(page, "", cell, header ? "</th>" : "</td>");
+}
+
+void imki_page_table(imki_page *page, size_t rows, size_t columns, unsigned right,
+                     const char *const *cells)
 {
     if (!page)
         return;
-    imki_text_put(&page->text, "<div class=\"table\"><table>\n");
+    element(page, "<div class=\"table\" role=\"group\" tabindex=\"0\" aria-label=\"",
+            page->heading ? page->heading : "Table", "\"><table>\n");
     for (size_t row = 0; row < rows; row++) {
-        imki_text_put(&page->text, "<tr>");
+        imki_text_put(&page->text, row == 0 ? "<thead><tr>" : row == 1 ? "<tbody><tr>" : "<tr>");
         for (size_t column = 0; column < columns; column++)
-            element(page, row == 0 ? "<th>" : "<td>", cells[row * columns + column],
-                    row == 0 ? "</th>" : "</td>");
-        imki_text_put(&page->text, "</tr>\n");
+            put_cell(page, cells[row * columns + column], row, column,
+                     column < 32 && (right >> column & 1U));
+        imki_text_put(&page->text, row == 0 ? "</tr></thead>\n" : "</tr>\n");
     }
-    imki_text_put(&page->text, "</table></div>\n");
+    imki_text_put(&page->text, rows > 1 ? "</tbody></table></div>\n" : "</table></div>\n");
 }
 
 void imki_page_break(imki_page *page)
@@ -106,15 +128,18 @@ void imki_page_break(imki_page *page)
 
 void imki_page_code(imki_page *page, const char *text)
 {
-    element(page, "<pre>", text, "</pre>\n");
+    element(page, "<pre tabindex=\"0\">", text, "</pre>\n");
 }
 
-/* A drawing made here; its identifiers are made unique, since several drawings share the page. No
- * text of a caller can contain one of these openings, because its quotes are escaped. */
+/* A drawing made here. Its identifiers get a number that follows from it and its place, so that
+ * drawings can share a page, also one into which several articles are put. No text of a caller can
+ * contain one of these openings, because its quotes are escaped. */
 static void put_svg(imki_page *page, const char *svg)
 {
     static const char *const openings[] = {" id=\"", " clip-path=\"url(#", "href=\"#"};
-    page->figures++;
+    uint32_t number = 2166136261U + page->drawings++; /* FNV-1a */
+    for (const char *c = svg; *c; c++)
+        number = (number ^ (unsigned char)*c) * 16777619U;
     while (*svg) {
         size_t length = 0;
         for (size_t i = 0; i < sizeof openings / sizeof openings[0] && length == 0; i++)
@@ -123,7 +148,7 @@ static void put_svg(imki_page *page, const char *svg)
         if (length == 0) {
             imki_text_put_char(&page->text, *svg++);
         } else {
-            imki_text_add(&page->text, "%.*sf%d-", (int)length, svg, page->figures);
+            imki_text_add(&page->text, "%.*sf%08x-", (int)length, svg, (unsigned)number);
             svg += length;
         }
     }
@@ -135,27 +160,57 @@ static void fail(imki_page *page, const imk_error *error)
         page->failure = *error;
 }
 
+/* JSON for the script; `class`: with a blank before, or "". */
+static void put_data(imki_page *page, imki_text *data, const char *class)
+{
+    size_t size;
+    char *json = imki_text_take(data, &size);
+    page->text.failed = page->text.failed || !json;
+    imki_text_add(&page->text, "<script type=\"application/json\"%s>", class);
+    imki_markup_data(&page->text, json ? json : "");
+    imki_text_put(&page->text, "</script>\n");
+    free(json);
+}
+
+/* The drawing of a panel, and its numbers for the script. */
+static void put_panel(imki_page *page, const imk_panel *panel, bool alone)
+{
+    imki_text drawing = {.bytes = NULL}, data = {.bytes = NULL};
+    size_t size;
+    imki_panel_svg(&drawing, panel, alone);
+    imki_panel_data(&data, panel, alone);
+    char *svg = imki_text_take(&drawing, &size);
+    page->text.failed = page->text.failed || !svg;
+    imki_text_put(&page->text, "<div class=\"panel\">\n");
+    put_svg(page, svg ? svg : "");
+    put_data(page, &data, "");
+    imki_text_put(&page->text, "</div>\n");
+    free(svg);
+    page->allan_deviations = page->allan_deviations || panel->allan_deviation;
+}
+
 void imki_page_figure(imki_page *page, const imk_figure *figure, const char *caption)
 {
     if (!page)
         return;
-    char *svg = NULL;
-    size_t size;
     imk_error error;
-    const bool drawn = imk_figure_svg(figure, &svg, &size, &error) == IMK_OK;
-    if (!drawn && error.status == IMK_ERROR_EMPTY) {
+    if (imki_figure_check(figure, &error) != IMK_OK) {
         element(page, "<p class=\"verdict note\">Figure left out: ", error.found, "; ");
         element(page, "", error.expected, ".</p>\n");
         return;
     }
-    if (!drawn) {
-        fail(page, &error);
-        return;
-    }
-    imki_text_put(&page->text, "<figure>\n");
-    put_svg(page, svg);
-    element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
-    free(svg);
+    const imki_figure_size size = imki_figure_measure(figure);
+    const bool alone = figure->panel_count == 1;
+    imki_text_add(&page->text, "<figure class=\"panels columns-%zu\">\n", size.columns);
+    if (!alone && figure->title[0])
+        element(page, "<p class=\"name\">", figure->title, "</p>\n");
+    imki_text_put(&page->text, "<div class=\"panes\">\n");
+    for (size_t p = 0; p < figure->panel_count; p++)
+        put_panel(page, &figure->panels[p], alone);
+    imki_text_put(&page->text, "</div>\n");
+    if (caption && caption[0])
+        element(page, "<figcaption>", caption, "</figcaption>\n");
+    imki_text_put(&page->text, "</figure>\n");
 }
 
 void imki_page_animation(imki_page *page, const imk_animation *animation, const char *caption)
@@ -174,7 +229,7 @@ void imki_page_animation(imki_page *page, const imk_animation *animation, const 
         element(page, "<p class=\"verdict note\">Animation left out: ", error.found, ".</p>\n");
         return;
     }
-    imki_text_put(&page->text, "<figure>\n");
+    imki_text_put(&page->text, "<figure class=\"animation\">\n");
     put_svg(page, svg);
     element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
     free(svg);
@@ -184,8 +239,14 @@ imk_status imki_page_take(imki_page *page, char **text, size_t *size, imk_error 
 {
     if (!page)
         return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
-    imki_text_put(&page->text,
-                  "<footer>Made by imukit " IMK_VERSION ".</footer>\n</main>\n</body>\n</html>\n");
+    if (page->allan_deviations) {
+        imki_text catalogue = {.bytes = NULL};
+        imki_catalogue_data(&catalogue);
+        put_data(page, &catalogue, " class=\"catalogue\"");
+    }
+    imki_text_put(&page->text, "</article>\n");
+    if (page->whole)
+        put_tail(page);
     imk_status status = page->failure.status;
     if (page->text.failed)
         status = imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);

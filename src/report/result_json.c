@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The data of a result as JSON [RFC8259]. An object of few plain values, such as a quantity, goes
  * on one line. */
-#include "growing_text_internal.h"
+#include "markup_internal.h"
 #include "result_internal.h"
 
 #include "imukit/decimal.h"
@@ -10,24 +10,6 @@
 #include <string.h>
 
 enum { FLAT_MOST = 6, INDENT = 2 };
-
-static void put_text(imki_text *out, const char *text)
-{
-    static const char short_forms[] = "\"\\\b\f\n\r\t", letters[] = "\"\\bfnrt";
-    imki_text_put_char(out, '"');
-    for (const char *c = text; *c; c++) {
-        size_t k = 0;
-        while (short_forms[k] && short_forms[k] != *c)
-            k++;
-        if (short_forms[k])
-            imki_text_put_bytes(out, (const char[]){'\\', letters[k]}, 2);
-        else if ((unsigned char)*c < 0x20)
-            imki_text_add(out, "\\u%04X", (unsigned)*c);
-        else
-            imki_text_put_char(out, *c);
-    }
-    imki_text_put_char(out, '"');
-}
 
 static bool is_container(const imki_data *data)
 {
@@ -56,7 +38,7 @@ static void put_scalar(imki_text *out, const imki_data *data)
         imki_text_add(out, "%lld", data->value.count);
         break;
     case IMKI_DATA_TEXT:
-        put_text(out, data->value.text);
+        imki_markup_quote(out, data->value.text);
         break;
     case IMKI_DATA_FLAG:
         imki_text_put(out, data->value.flag ? "true" : "false");
@@ -75,7 +57,7 @@ static void put_separator(imki_text *out, const imki_data *member, bool flat, in
     else
         imki_text_add(out, "%s\n%*s", first ? "" : ",", INDENT * (depth + 1), "");
     if (member->key) {
-        put_text(out, member->key);
+        imki_markup_quote(out, member->key);
         imki_text_put(out, ": ");
     }
 }
@@ -139,7 +121,7 @@ static void put_in_order(imki_text *out, const imki_data *data)
          member = object ? next_by_key(data, member) : member->next) {
         imki_text_put(out, member == first ? "" : ",");
         if (object) {
-            put_text(out, member->key);
+            imki_markup_quote(out, member->key);
             imki_text_put_char(out, ':');
         }
         put_in_order(out, member);

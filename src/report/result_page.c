@@ -15,7 +15,7 @@ static void put_table(imki_page *page, const imk_table *table, imki_arena *scrat
         cells[k] = c < row->count ? row->cells[c] : "";
     }
     if (cells && count > 0)
-        imki_page_table(page, table->rows, table->columns, cells);
+        imki_page_table(page, table->rows, table->columns, table->right, cells);
 }
 
 static void put_block(imki_page *page, const imki_block *block, imki_arena *scratch)
@@ -48,12 +48,15 @@ static void put_block(imki_page *page, const imki_block *block, imki_arena *scra
     }
 }
 
-imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size, imk_error *error)
+static imk_status render(const imk_result *result, bool whole, char **text, size_t *size,
+                         imk_error *error)
 {
     if (!result || result->arena.failed)
         return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
     imki_arena scratch = {.allocator = result->arena.allocator};
-    imki_page *page = imki_page_create(result->title, result->subtitle);
+    imki_page *page = imki_page_create(result->title, result->subtitle, whole);
+    if (result->judgement)
+        imki_page_judgement(page, (int)result->usability, result->judgement);
     for (const imki_block *b = result->first; b; b = b->next)
         if (b->audience & IMK_FOR_PAGE)
             put_block(page, b, &scratch);
@@ -70,4 +73,15 @@ imk_status imk_result_to_page(const imk_result *result, char **text, size_t *siz
     *text = made;
     *size = made_size;
     return IMK_OK;
+}
+
+imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size, imk_error *error)
+{
+    return render(result, true, text, size, error);
+}
+
+imk_status imk_result_to_fragment(const imk_result *result, char **text, size_t *size,
+                                  imk_error *error)
+{
+    return render(result, false, text, size, error);
 }

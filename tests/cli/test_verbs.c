@@ -129,7 +129,7 @@ static void test_allan_of_any_column(void **state)
                          "-o -"),
                      0);
     check_nist_table();
-    assert_int_equal(run("$I allan rate.txt --columns x --rate 1Hz | head -1"), 0);
+    assert_int_equal(run("$I allan rate.txt --columns x --rate 1Hz | sed -n 3p"), 0);
     assert_string_equal(out, "tau [s]  x [1]\n");
     sweep();
 }
@@ -220,7 +220,7 @@ static void test_identify_recovers_the_model(void **state)
     assert_int_equal(run("$I convert m.yaml filter.yaml --to filter --rate 20Hz"), 0);
     assert_int_equal(run("$I simulate m.yaml --rate 20Hz --duration 1min -o twin.csv"), 0);
     read_text("r.html", out);
-    check_contains(out, "<h2>Verdict</h2>", "page");
+    check_contains(out, "<p class=\"judgement ", "page");
     check_contains(out, "imukit identify s.csv --truth AHRS --confidence 0.9999", "page");
     check_contains(out, "angle_random_walk: ", "page");
     check_contains(out, "<svg", "page");

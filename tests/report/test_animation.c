@@ -218,13 +218,16 @@ static void test_page(void **state)
     imk_error error;
     char *text;
     size_t size;
-    imki_page *page = imki_page_create("t", "s");
+    imki_page *page = imki_page_create("t", "s", true);
     imki_page_animation(page, &animation, "first > one");
     imki_page_animation(page, &animation, "second");
     imki_page_animation(NULL, &animation, "no page");
     CHECK_OK(imki_page_take(page, &text, &size, &error));
-    assert_non_null(strstr(text, "id=\"f1-track\""));
-    assert_non_null(strstr(text, "href=\"#f2-track\""));
+    const char *first = strstr(text, "<defs><path id=\""),
+               *second = strstr(first + 1, "<defs><path");
+    assert_memory_equal(first + 25, "-track\"", 7);
+    assert_memory_not_equal(first, second, 25);
+    assert_memory_equal(strstr(second, "href=\"#") + 7, second + 16, 15);
     assert_non_null(strstr(text, "<figcaption>first &gt; one</figcaption>"));
     free(text);
 }

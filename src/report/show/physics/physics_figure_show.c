@@ -67,15 +67,29 @@ void imk_show_physics_panel(const imk_physics_view *v, imk_figure_builder *figur
     char name[IMK_PHYSICS_LABEL];
     const imk_panel panel = {.title = view->title, .x_label = v->x_label, .y_label = v->y_label};
     imk_figure_panel(figure, &panel);
+    if (v->law_points > 0) {
+        const double *x = v->data + (size_t)(view->curve_count + 1) * v->points;
+        imk_curve law = {.label = view->law_name,
+                         .style = IMK_CURVE_LINE,
+                         .color = 7,
+                         .count = v->law_points,
+                         .x = x,
+                         .y = x + v->law_points};
+        imk_figure_curve(figure, &law, 1);
+        law.label = ""; /* a band without height: the axes span bands, not lines */
+        law.style = IMK_CURVE_BAND;
+        law.lower = law.upper = law.y;
+        imk_figure_curve(figure, &law, 1);
+    }
     for (int c = 0; c < view->curve_count; c++) {
         const char *signal = v->instrument->signals[view->y[c]].name;
-        const imk_curve curve = {
-            .label = view->curve_count > 1 ? imki_physics_label(name, signal, "1") : "",
-            .style = view->points ? IMK_CURVE_POINTS : IMK_CURVE_LINE,
-            .color = c,
-            .count = v->points,
-            .x = v->data,
-            .y = v->data + (size_t)(c + 1) * v->points};
+        const bool named = view->curve_count > 1 || v->law_points > 0;
+        const imk_curve curve = {.label = named ? imki_physics_label(name, signal, "1") : "",
+                                 .style = view->points ? IMK_CURVE_POINTS : IMK_CURVE_LINE,
+                                 .color = c,
+                                 .count = v->points,
+                                 .x = v->data,
+                                 .y = v->data + (size_t)(c + 1) * v->points};
         imk_figure_curve(figure, &curve, 1);
     }
 }
@@ -89,6 +103,9 @@ imk_animation imk_physics_animation(const imk_physics_view *v)
                            .x = v->data,
                            .y = v->data + v->points,
                            .points = v->view.points,
+                           .law_count = v->law_points,
+                           .law_x = v->data + 2 * v->points,
+                           .law_y = v->data + 2 * v->points + v->law_points,
                            .duration = 12, /* slow enough to follow with the eye [s] */
                            .clock = v->clock};
 }

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page's side of a worker: `engine.run()` does a verb of the command and gives what it printed
+// and wrote. All that is computed is computed there, by the same C as in the command.
+
+'use strict';
+
+/** The bytes of the module, unpacked once. */
+const moduleBytes = (() => {
+  let bytes;
+  return () => (bytes ||= unpackModule());
+})();
+
+class Engine {
+  constructor() {
+    this.waiting = new Map();
+    this.next = 1;
+  }
+
+  async start() {
+    if (this.worker) return;
+    this.worker = new Worker(workerAddress());
+    this.worker.onmessage = ({ data }) => this.answer(data);
+    this.worker.onerror = (event) => this.fail(event.message || 'the worker has stopped');
+    this.worker.postMessage({ module: await moduleBytes() });
+  }
+
+  /** Do a verb.
+   *  words: ['identify', 'log.csv', '--json']; files: [[name, File, Blob or Uint8Array]];
+   *  progress: is called with lines such as "identifying 43 %".
+   *  Gives { code, out, err, files, milliseconds }; throws Cancelled, or Error when the worker fails. */
+  async run(words, { files = [], progress, environment } = {}) {
+    return this.ask({ words, files, environment }, progress);
+  }
+
+  async ask(message, progress) {
+    const id = this.next++;
+    const answer = new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject, progress }));
+    await this.start();
+    if (this.worker) this.worker.postMessage({ id, ...message });
+    return answer;
+  }
+
+  answer({ id, progress, failed, ...result }) {
+    const asked = this.waiting.get(id);
+    if (!asked) return;
+    if (progress !== undefined) {
+      if (asked.progress) asked.progress(progress);
+      return;
+    }
+    this.waiting.delete(id);
+    if (failed) asked.reject(new Error(failed));
+    else asked.resolve(result);
+  }
+
+  fail(reason) {
+    const all = [...this.waiting.values()];
+    this.waiting.clear();
+    if (this.worker) this.worker.terminate();
+    this.worker = null;
+    for (const asked of all) asked.reject(reason instanceof Error ? reason : new Error(reason));
+  }
+
+  /** Stop what runs; the next run() has a new worker. */
+  cancel() {
+    this.fail(new Cancelled());
+  }
+}
+
+class Cancelled extends Error {
+  constructor() {
+    super('cancelled');
+  }
+}
+
+/** Text packed into the page by build.mjs, as bytes. */
+async function unpackModule() {
+  const packed = document.getElementById('module').textContent.trim();
+  const letters = atob(packed);
+  const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
+  return new Response(stream).arrayBuffer();
+}
+
+/** Address of the worker's script, which is a text of this page. */
+const workerAddress = (() => {
+  let address;
+  return () => (address ||= URL.createObjectURL(
+    new Blob([document.getElementById('worker').textContent], { type: 'text/javascript' })));
+})();
