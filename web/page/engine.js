@@ -4,10 +4,10 @@
 
 'use strict';
 
-/** The bytes of the module, unpacked once. */
-const moduleBytes = (() => {
-  let bytes;
-  return () => (bytes ||= unpackModule());
+/** The module, unpacked and compiled once, for all workers. */
+const compiledModule = (() => {
+  let module;
+  return () => (module ||= unpackModule());
 })();
 
 class Engine {
@@ -16,12 +16,15 @@ class Engine {
     this.next = 1;
   }
 
+  /** Begin the worker; it has the module when this is done, whoever began it. */
   async start() {
-    if (this.worker) return;
-    this.worker = new Worker(workerAddress());
-    this.worker.onmessage = ({ data }) => this.answer(data);
-    this.worker.onerror = (event) => this.fail(event.message || 'the worker has stopped');
-    this.worker.postMessage({ module: await moduleBytes() });
+    if (!this.worker) {
+      const worker = (this.worker = new Worker(workerAddress()));
+      worker.onmessage = ({ data }) => this.answer(data);
+      worker.onerror = (event) => this.fail(event.message || 'the worker has stopped');
+      this.ready = compiledModule().then((module) => worker.postMessage({ module }));
+    }
+    await this.ready;
   }
 
   /** Do a verb.
@@ -72,13 +75,15 @@ class Cancelled extends Error {
   }
 }
 
-/** Text packed into the page by build.mjs, as bytes. */
-async function unpackModule() {
-  const packed = document.getElementById('module').textContent.trim();
-  const letters = atob(packed);
-  const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
-  return new Response(stream).arrayBuffer();
+/** The module that build.mjs has packed into the page, compiled by a worker that does only this. */
+function unpackModule() {
+  const worker = new Worker(workerAddress());
+  const answer = new Promise((resolve, reject) => {
+    worker.onmessage = ({ data }) => (data.module ? resolve(data.module) : reject(new Error(data.failed)));
+    worker.onerror = (event) => reject(new Error(event.message || 'the worker has stopped'));
+  });
+  worker.postMessage({ packed: document.getElementById('module').textContent });
+  return answer.finally(() => worker.terminate());
 }
 
 /** Address of the worker's script, which is a text of this page. */
