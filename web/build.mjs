@@ -23,7 +23,8 @@ function packed(path) {
 const screens = readdirSync(here('page/screens')).filter((name) => name.endsWith('.js')).sort();
 const order = ['log', 'device', 'calibrate', 'grades', 'instruments', 'bench', 'tour'];
 screens.sort((a, b) => order.indexOf(a.slice(0, -3)) - order.indexOf(b.slice(0, -3)));
-const script = [text('../src/report/page_script.js'), text('page/elements.js'), text('page/engine.js'),
+const reports = ['elements', 'axes', 'panel', 'overlay', 'figures'].map((name) => text(`../src/report/page/page_${name}.js`));
+const script = [...reports, text('page/elements.js'), text('page/engine.js'),
   ...['slider', 'strip_chart', 'schematic', 'instrument_layout',
     'bench_parts', 'bench_target', 'bench_noise', 'bench_heading', 'bench_grades'].map((name) => text(`page/${name}.js`)), 'const screens = {};',
   ...screens.map((name) => text('page/screens/' + name)), text('page/app.js'), 'begin();'].map(lean).join('\n');
