@@ -111,6 +111,7 @@ typedef struct imk_schematic {
     int cycles;          /**< so many of them are one round of the animation */
     double settle;       /**< time simulated before the animation begins [s] */
     double input;        /**< of the animation: rate [rad/s] or specific force [m/s^2] along x */
+    bool sine;           /**< it is the amplitude of a sine, whose period is `cycle` */
     double force;        /**< specific force along x of a gyro [m/s^2] */
     /** Draw it (src/report/schematic). */
     void (*draw)(struct imki_drawing *drawing, const void *design);
