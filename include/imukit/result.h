@@ -182,7 +182,7 @@ IMK_API imk_status imk_result_to_text(const imk_result *result, const char *bold
 IMK_API imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size,
                                       imk_error *error);
 /** Render the display as the <article> of that page, to be put into a page of others. That page
- *  needs src/report/page_style.css and the parts of the script in src/report (page_*.js), whose
+ *  needs the style sheet and the scripts of src/report/page, whose
  *  `imukitFigures.attach(element)` makes what is below an element interactive.
  *  @param error  also tells why a figure could not be drawn */
 IMK_API imk_status imk_result_to_fragment(const imk_result *result, char **text, size_t *size,

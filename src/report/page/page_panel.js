@@ -233,7 +233,7 @@ const imukitPanel = (() => {
     const {data, frame} = panel, middle = frame.left + frame.width / 2;
     const half = frame.top + frame.height / 2, centred = {class: 'large', 'text-anchor': 'middle'};
     return [
-      line(data.title, middle, 20, 2 * Math.min(middle, width - middle) - 140,
+      line(data.title, middle, 20, 2 * Math.min(middle, width - middle) - 8,
         {...centred, class: 'large title'}, 13),
       line(data.x.label, middle, frame.bottom + 36, width - 16, centred, 12),
       ...notes.map((note, i) => line(note, frame.left, frame.bottom + 52 + 14 * i,

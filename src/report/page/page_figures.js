@@ -95,7 +95,7 @@ const imukitFigures = (() => {
       this.plot.prepend(drawing);
       this.root.querySelector('svg').remove();
       this.root.classList.add('live');
-      this.root.prepend(this.tools, this.plot, this.key);
+      this.root.prepend(this.plot, html('div', {class: 'foot'}, this.key, this.tools));
       this.drawKey();
     }
 
@@ -261,8 +261,9 @@ const imukitFigures = (() => {
 
     /* To the next point of the curve that can be seen; from none to the first. */
     step(by) {
-      const curve = this.pointed ? this.pointed.curve : this.visible().reverse().find(c =>
-        c.label && !isFilled(c)) || this.visible()[0];
+      const seen = this.visible(), named = seen.filter(c => c.label && !isFilled(c));
+      const curve = this.pointed ? this.pointed.curve
+        : named.filter(c => this.own.includes(c)).pop() || named[0] || seen[0];
       if (!curve)
         return;
       let index = this.pointed ? this.pointed.index + Math.sign(by) : by > 0 ? 0 : curve.points.length - 1;

@@ -13,9 +13,10 @@ const imukitPage = (() => {
     return made;
   }
 
-  /* A button; `name` is what readers hear, and see when they rest on it. */
-  function button(text, name, action) {
-    const made = html('button', {type: 'button', 'aria-label': name, title: name}, text);
+  /* A button; `title` is seen by those who rest on it, and heard instead of a mere sign. */
+  function button(text, title, action) {
+    const made = html('button', {type: 'button', title, ...(text.length === 1 && {'aria-label': title})},
+      text);
     made.addEventListener('click', action);
     return made;
   }

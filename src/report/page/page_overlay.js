@@ -69,11 +69,14 @@ const imukitOverlay = (() => {
       }));
   }
 
-  function layerOfFile(name, text) {
-    const curves = text.trimStart().startsWith('{') ? curvesOfJson(text) : curvesOfPage(text);
+  /* The beginning tells pages and JSON from logs, which can be long. */
+  async function layerOfFile(file) {
+    const begin = (await file.slice(0, 200).text()).trimStart()[0];
+    const read = {'{': curvesOfJson, '<': curvesOfPage}[begin];
+    const curves = read ? read(await file.text()) : [];
     if (curves.length === 0)
       throw new Error('no Allan deviations');
-    return {name: name.replace(/\.(html?|json)$/i, ''), curves};
+    return {name: file.name.replace(/\.(html?|json)$/i, ''), curves};
   }
 
   /* ---- layers on panels ---------------------------------------------------------------------- */
@@ -145,7 +148,7 @@ const imukitOverlay = (() => {
     input.addEventListener('change', async () => {
       for (const file of [...input.files])
         try {
-          add(layerOfFile(file.name, await file.text()));
+          add(await layerOfFile(file));
         } catch (error) {
           problem.textContent = `${file.name} holds no Allan deviations. Choose a page that imukit ` +
             'allan or imukit identify wrote with --report, or what they print with --json.';
