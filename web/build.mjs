@@ -16,7 +16,8 @@ const lean = (script) => script.replace(/^\s*\/\/.*$/gm, '').replace(/^\s*\/\*\*
 const screens = readdirSync(here('page/screens')).filter((name) => name.endsWith('.js')).sort();
 const order = ['log', 'device', 'calibrate', 'grades', 'instruments', 'bench', 'tour'];
 screens.sort((a, b) => order.indexOf(a.slice(0, -3)) - order.indexOf(b.slice(0, -3)));
-const script = [text('../src/report/page_script.js'), text('page/elements.js'), text('page/engine.js'), 'const screens = {};',
+const script = [text('../src/report/page_script.js'), text('page/elements.js'), text('page/engine.js'),
+  ...['slider', 'strip_chart', 'schematic', 'instrument_layout'].map((name) => text(`page/${name}.js`)), 'const screens = {};',
   ...screens.map((name) => text('page/screens/' + name)), text('page/app.js'), 'begin();'].map(lean).join('\n');
 const worker = [text('page/wasi.js'), text('page/live.js'), text('page/worker.js')].map(lean).join('\n');
 const hash = createHash('sha256').update(script).digest('base64');
