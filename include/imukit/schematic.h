@@ -73,6 +73,7 @@ typedef struct imk_schematic_part {
     /** Moves with another part, of this id: the gain is `reach` times its gain; NULL: by itself. */
     const char *with;
     double base;
+    bool held;    /**< a loop of the default design holds it: it may rest in the animation */
     double still; /**< in the still drawing the signal is this part of `full` */
 } imk_schematic_part;
 
@@ -111,6 +112,7 @@ typedef struct imk_schematic {
     int cycles;          /**< so many of them are one round of the animation */
     double settle;       /**< time simulated before the animation begins [s] */
     double input;        /**< of the animation: rate [rad/s] or specific force [m/s^2] along x */
+    bool sine;           /**< it is the amplitude of a sine, whose period is `cycle` */
     double force;        /**< specific force along x of a gyro [m/s^2] */
     /** Draw it (src/report/schematic). */
     void (*draw)(struct imki_drawing *drawing, const void *design);

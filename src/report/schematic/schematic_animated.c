@@ -31,6 +31,7 @@ static imk_physics_input input_of(const imk_physics_log_settings *settings,
         (gyro ? input.exposure.angular_rate : input.exposure.specific_force)[0] = schematic->input;
         if (gyro)
             input.exposure.specific_force[0] = schematic->force;
+        input.frequency = schematic->sine ? 1 / schematic->cycle(settings->design) : 0;
     }
     return input;
 }

@@ -20,6 +20,7 @@
  *        one     first beam, drive: orange  two     second beam, sense: blue
  *        field   electrodes, coils, magnets glass   optics
  *        accent  what the eye shall follow: pickoff, detector
+ *    `shaft` is a thick line, `rim` a filling without an outline in the colour of the class before;
  *    `fill-one`, `fill-two`, `fill-accent` are fillings without an outline; `hatch` is drawn by
  *    imki_draw_anchor().
  * 5. Names of the parts by imki_draw_label(), with a line to what they name. Texts are of 20 px,
@@ -39,7 +40,10 @@
 #include "report/growing_text_internal.h"
 
 /* The schematics there are. */
-#define IMKI_SCHEMATICS(kind) kind(ring_laser) kind(tuning_fork)
+#define IMKI_SCHEMATICS(kind)                                                                      \
+    kind(free_gyro) kind(rate_gyro) kind(rate_integrating_gyro) kind(tuned_gyro)                   \
+        kind(suspended_rotor) kind(fibre_optic) kind(ring_laser) kind(tuning_fork)                 \
+            kind(shell_gyro) kind(mems_accelerometer) kind(pendulous_servo) kind(vibrating_beam)
 
 #define IMKI_SCHEMATIC_LENGTH(array) (sizeof(array) / sizeof((array)[0]))
 
