@@ -3,7 +3,8 @@
  * fetched and nothing is stored.
  *
  * imukitFigures.attach(element) does it for all that is below an element, such as an article that
- * was put into a page later. What is interactive already stays as it is. */
+ * was put into a page later. What is interactive already stays as it is. imukitFigures.setDark(true)
+ * makes the page dark, whatever the system is; false: light. */
 'use strict';
 
 const imukitFigures = (() => {
@@ -46,7 +47,7 @@ const imukitFigures = (() => {
         button('−', 'Zoom out', () => this.zoom(zoomStep)),
         button('↺', 'Show all', () => this.show(null)));
       this.listen();
-      new ResizeObserver(() => this.later()).observe(root);
+      new ResizeObserver(() => Math.floor(root.clientWidth) !== this.width && this.later()).observe(root);
     }
 
     name() {
@@ -77,6 +78,7 @@ const imukitFigures = (() => {
       const width = Math.floor(this.root.clientWidth);
       if (width < 40) // is not shown
         return;
+      this.width = width;
       const ratio = this.alone ? 0.6 : this.data.regions.length > 0 ? 0.74 : 0.8;
       const height = Math.round(Math.max(250, Math.min(560, ratio * width)));
       const drawing = imukitPanel.draw(this, width, height);
@@ -450,7 +452,7 @@ const imukitFigures = (() => {
     fresh(root, '.imukit-page .imukit').forEach(imukitPage.attachTheme);
   }
 
-  return {attach};
+  return {attach, setDark: imukitPage.setDark};
 })();
 
 imukitFigures.attach(document);
