@@ -335,6 +335,8 @@ const imukitFigures = (() => {
         const at = here(event);
         if (event.button !== 0)
           return;
+        if (event.pointerType === 'touch') // what was told elsewhere goes
+          plot.focus({preventScroll: true});
         if (event.pointerType === 'touch' && !this.zoomed)
           return void this.hover(at.x, at.y);
         this.drag = {from: at, to: at, moves: event.shiftKey || event.pointerType === 'touch'};
@@ -359,7 +361,10 @@ const imukitFigures = (() => {
           this.hover(here(event).x, here(event).y);
       });
       plot.addEventListener('pointercancel', () => { this.drag = null; });
-      plot.addEventListener('pointerleave', () => this.drag || this.point(null));
+      plot.addEventListener('pointerleave', event => {
+        if (!this.drag && event.pointerType !== 'touch') // a finger always leaves
+          this.point(null);
+      });
       plot.addEventListener('blur', () => this.point(null));
       plot.addEventListener('dblclick', () => this.show(null));
       plot.addEventListener('wheel', event => {
