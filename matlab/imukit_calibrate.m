@@ -12,8 +12,8 @@ function result = imukit_calibrate (varargin)
 %
 % R is what jsondecode makes of "imukit calibrate --json" (docs/json.md):
 %   R.result.parameters(k)          name, value, sigma, lower, upper, unit
-%   R.result.level, R.result.verdict   'good', 'note', 'warning' or 'useless', and the sentence
-% R.model is the model as the text of a model file; it is not there where the result is useless.
+%   R.result.usability              grade, sentence: what the result can be used for
+% R.model is the model as the text of a model file; it is not there where the result is not usable.
 %
 % Options are those of the command, with _ for -. Numbers are in SI units; a text states its unit:
 %   'position'     '48.1 deg, 11.6 deg, 520 m', for gravity and the Earth's rotation

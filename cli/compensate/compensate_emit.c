@@ -26,17 +26,22 @@ const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS] = {
 static const char *const arithmetics[3] = {"float", "double", "fixed"};
 static const char *const motions[2] = {"rate", "force"}, *const units[2] = {"rad/s", "m/s^2"};
 
-/* The terms that the code leaves in although compensate takes them out of a log. */
-static void warn_of_terms(const imk_term_keys *left_in)
+/* The terms that the code leaves in although compensate takes them out of a log. @return how many
+ */
+static int warn_of_terms(const imk_term_keys *left_in)
 {
+    int count = 0;
     static const char *const needs_time[] = {"accel.lever_arm", "temperature_rate", "warm_up"};
     for (int i = 0; i < left_in->count; i++)
         for (size_t k = 0; k < sizeof needs_time / sizeof needs_time[0]; k++)
-            if (strstr(left_in->key[i], needs_time[k]))
+            if (strstr(left_in->key[i], needs_time[k])) {
+                count++;
                 command_warn("left_in",
                              "the code does not correct %s, which needs more than one sample; "
                              "imukit compensate LOG MODEL takes it out of a log",
                              left_in->key[i]);
+            }
+    return count;
 }
 
 static void show_files(const char *directory, const char *name, imk_result *result)
@@ -110,6 +115,38 @@ static void show_summary(const char *directory, const char *name, const imk_firm
                     directory, name, directory, name);
 }
 
+/* A bound that holds is no use without a term to correct.
+ * @param left  terms that the code cannot correct */
+static void judge(const imk_firmware *plan, const imk_term_keys *taken_out, int left,
+                  imk_result *result)
+{
+    char text[200] = "", care[80] = "";
+    bool stated = true;
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const size_t used = strlen(text);
+        if (plan->axis_count[sensor] == 0)
+            continue;
+        stated = stated && plan->limit_stated[sensor];
+        (void)snprintf(text + used, sizeof text - used,
+                       "%sthe %s is exact to %.2g %s up to %.4g %s", used > 0 ? ", " : "",
+                       motions[sensor], plan->bound[sensor], units[sensor],
+                       least_limit(plan, sensor), units[sensor]);
+    }
+    if (left > 0)
+        (void)snprintf(care, sizeof care,
+                       " with care, as it leaves in %d term%s that need%s more than one sample",
+                       left, left == 1 ? "" : "s", left == 1 ? "s" : "");
+    else if (!stated)
+        (void)snprintf(care, sizeof care, " with care, as the model does not state every range");
+    if (taken_out->count == 0)
+        imk_result_judge(result, IMK_NOT_USABLE,
+                         "Not usable: the model has no deterministic term that the code could take "
+                         "out.");
+    else
+        imk_result_judge(result, care[0] ? IMK_USABLE_WITH_CARE : IMK_USABLE, "Usable%s: %s.", care,
+                         text);
+}
+
 static int emit(const compensate_options *o, const char *model_name, const imk_model *model,
                 const imk_model *whole, imk_firmware *plan)
 {
@@ -129,7 +166,7 @@ static int emit(const compensate_options *o, const char *model_name, const imk_m
     if (taken_out.count == 0)
         command_warn("nothing", "%s has no deterministic term: there is nothing to take out",
                      model_name);
-    warn_of_terms(&left_in);
+    const int left = warn_of_terms(&left_in);
     warn_of_ranges(plan);
     if (imk_firmware_write(o->emission.directory, plan, whole, &files, &error) != IMK_OK)
         return command_error(&error, NULL);
@@ -139,6 +176,7 @@ static int emit(const compensate_options *o, const char *model_name, const imk_m
     imk_result_text(result, "model", model_name);
     imk_result_end(result);
     imk_result_object(result, "result");
+    judge(plan, &taken_out, left, result);
     show_files(o->emission.directory, name, result);
     imk_result_text(result, "function", name);
     imk_result_text(result, "arithmetic", arithmetics[plan->arithmetic]);

@@ -176,7 +176,8 @@ static int show(const evaluation *v)
                                       .rest_count = v->log->rest_count,
                                       .limit_count = v->limit_count,
                                       .channel = v->log->channel,
-                                      .rest = v->log->rest};
+                                      .rest = v->log->rest,
+                                      .findings = &v->log->findings};
     imk_show_evaluate(&shown, result);
     show_origin(result);
     const show_options options = {

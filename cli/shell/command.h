@@ -13,7 +13,9 @@
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
-/* The verbs in the order of the help: NAME_verb of each is in a file of its own. */
+/* The verbs in the order of the help: NAME_verb of each is in a file of its own. A build with fewer
+ * defines its own list. */
+#ifndef COMMAND_VERBS
 #define COMMAND_VERBS(VERB)                                                                        \
     VERB(info)                                                                                     \
     VERB(identify)                                                                                 \
@@ -32,10 +34,15 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
     VERB(tune)                                                                                     \
     VERB(navigate)                                                                                 \
     VERB(merge)
+#endif
 
 #define VERB(name) extern const verb name##_verb;
 COMMAND_VERBS(VERB)
 #undef VERB
+
+/* Do what a line says: its words after the name of the command, of which argv[0] is one.
+ * @return the exit code */
+int command_obey(int argc, char **argv);
 
 /* Remember which verb speaks; messages start with it. */
 void command_begin(const char *verb_name);

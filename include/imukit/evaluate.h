@@ -97,8 +97,9 @@ typedef struct imk_evaluation {
     imk_evaluation_figure asymmetry;      /**< (K+ - K-)/mean, with sign, of lines that meet at
                                                reference 0 [1] */
     /** Smallest step between successive levels such that it and all larger steps give at least half
-     *  of their change [reference]; lower: largest step that certainly does not, 0: none; upper:
-     *  smallest from which all certainly do, NaN: none. */
+     *  of their change [reference]; NaN: all do, and it is finer than was tested; infinite:
+     *  the largest does not. lower: largest step that certainly does not, 0: none; upper: smallest
+     *  from which all certainly do, NaN: none. */
     imk_evaluation_figure resolution;
     imk_evaluation_figure threshold; /**< the same for steps from reference 0 */
     /** Smallest ones tested that the noise allows to assess; NaN: none. */

@@ -149,9 +149,25 @@ IMK_API imk_status imk_identify_channel(const imk_identify_settings *settings, s
  *  @return  the sum over the channels that is least probable; degrees 0: none is low */
 IMK_API imk_level_sum imk_level_loss(size_t count, const imk_identification *const *channels);
 
+/** Kinds of what a model has beside the five terms. */
+typedef enum imk_identified_kind {
+    IMK_IDENTIFIED_GAUSS_MARKOV = 0,
+    IMK_IDENTIFIED_SINUSOID,
+    IMK_IDENTIFIED_RESONANCE,
+    IMK_IDENTIFIED_ROUNDING, /**< to steps, after the output filter */
+    IMK_IDENTIFIED_KINDS
+} imk_identified_kind;
+/** How many of a kind the identified model has. */
+IMK_API int imk_identification_count(const imk_identification *result, imk_identified_kind kind);
+/** Expected Allan variance of one of them at tau = m dt, exact for the sampled process [unit^2].
+ *  @param index  0 … imk_identification_count() - 1 */
+IMK_API double imk_identification_part_allan_variance(const imk_identification *result,
+                                                      imk_identified_kind kind, int index,
+                                                      double dt, size_t m);
 /** Expected Allan variance of the identified model at tau = m dt, exact for the sampled process
  *  [unit^2].
- *  @param term  one of the five terms; negative: all terms together */
+ *  @param term  one of the five terms, white noise behind the output filter; negative: the whole
+ *               model */
 IMK_API double imk_identification_allan_variance(const imk_identification *result, double dt,
                                                  size_t m, int term);
 

@@ -120,8 +120,13 @@ typedef struct imk_view {
     double settle;              /**< time simulated before the figure begins [s] */
     /** Default input of the figure: rate [rad/s] or specific force [m/s^2] along x. */
     double input;
-    double force; /**< default specific force along x of the figure of a gyro [m/s^2] */
-    bool points;  /**< drawn as separate points, because the signals jump */
+    double force;   /**< default specific force along x of the figure of a gyro [m/s^2] */
+    bool points;    /**< drawn as separate points, because the signals jump */
+    bool less_ramp; /**< against time: without the straight line from the first point to the last,
+                       which the input makes */
+    /** Closed form of the curve, drawn behind it, in SI units; NULL: none. */
+    double (*law)(const void *design, double x);
+    const char *law_name; /**< "fringe" */
 } imk_view;
 
 /* ---- derived quantities ---------------------------------------------------------------------- */

@@ -46,7 +46,8 @@ typedef struct imk_physics_log_settings {
     /** Length and sampling rate of views [s], [Hz]; 0: as each view states. */
     double view_duration, view_rate;
     bool quick;      /**< a sweep does what is long at the slow level, if there is one; true */
-    bool view_input; /**< true: views use `input`; false: the input that each view states */
+    bool view_input; /**< true: views use `input`, and gyros also the force that the view states if
+                        `input` has none; false: the input that each view states */
 } imk_physics_log_settings;
 
 /** Check the input: angular rates and specific forces up to 1e6 [rad/s], [m/s^2]; temperatures
@@ -74,8 +75,11 @@ typedef struct imk_physics_log {
     size_t points;
     double *time; /**< of each point [s]; this and the next two hold IMK_PHYSICS_CURVE_POINTS + 1
                      values */
-    double *curve[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< in imk_physics_output_unit() */
-    double *input;                             /**< in the unit of output 0 */
+    double *curve[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< mean of the samples of each point, in
+                                                  imk_physics_output_unit() */
+    /** Least and greatest of these samples. */
+    double *least[IMK_INSTRUMENT_OUTPUTS_MAX], *greatest[IMK_INSTRUMENT_OUTPUTS_MAX];
+    double *input; /**< in the unit of output 0 */
     imk_findings findings;
     imk_allocator allocator; /**< allocator of this structure */
 } imk_physics_log;
@@ -108,8 +112,11 @@ typedef struct imk_physics_view {
     imk_view view; /**< the view with the duration and rate used */
     const imk_instrument *instrument;
     size_t points;
-    double *data; /**< `points` values of x, then of each curve, in the units of the labels */
-    bool empty;   /**< the design has nothing to show here, such as the bits of an open loop */
+    double *data; /**< `points` values of x, then of each curve, in the units of the labels. Against
+                     time, two points are the least and the greatest value of a stretch where there
+                     are more samples than points */
+    size_t law_points; /**< as many values of x and then of the view's law follow in `data` */
+    bool empty;        /**< the design has nothing to show here, such as the bits of an open loop */
     char x_label[IMK_PHYSICS_LABEL], y_label[IMK_PHYSICS_LABEL], clock[80];
     imk_allocator allocator; /**< allocator of the data */
 } imk_physics_view;

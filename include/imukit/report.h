@@ -36,8 +36,8 @@ typedef struct imk_curve {
  *  upper right). */
 typedef struct imk_region {
     const char *label;
-    int color; /**< index into the palette */
-    double x_low, x_high, y_low, y_high;
+    int color;                           /**< index into the palette */
+    double x_low, x_high, y_low, y_high; /**< infinite: to the frame */
     bool label_right;
     bool dashed; /**< outline of dashes, for limits that are not certain */
 } imk_region;
@@ -66,6 +66,7 @@ typedef struct imk_panel {
         *note; /**< lines below the label of the x axis, separated by line feeds; NULL: none */
     bool allan_deviation; /**< of a rate against averaging time: a page can lay the deviations of
                              other sensors over it */
+    double y_low, y_high; /**< what the y axis spans, if y_low < y_high; then x spans lines, too */
 } imk_panel;
 
 /** Panels on a grid, row by row. Panels are larger if regions have labels. The title is drawn only
@@ -91,6 +92,8 @@ typedef struct imk_animation {
     size_t count;                          /**< >= 2 */
     const double *x, *y;                   /**< at equal intervals of time; all finite */
     bool points;                           /**< the path is drawn as separate points */
+    size_t law_count;                      /**< points of a line behind the path; 0: none */
+    const double *law_x, *law_y;           /**< all finite */
     double duration;                       /**< time of one round on the screen [s], 1 … 3600 */
     const char *clock;                     /**< true time of one round, "600 us"; "": not shown */
 } imk_animation;

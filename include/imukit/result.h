@@ -64,6 +64,24 @@ IMK_API void imk_result_numbers(imk_result *result, const char *key, size_t coun
 IMK_API const char *imk_result_find(const imk_result *result, const char *path);
 /** @} */
 
+/** @name Judgement
+ *  @{ */
+/** What something can be used for. */
+typedef enum imk_usability {
+    IMK_USABLE = 0,       /**< no test found a fault */
+    IMK_USABLE_WITH_CARE, /**< a fault or a doubt affects some of it */
+    IMK_NOT_USABLE
+} imk_usability;
+/** Add the object "usability" of a part of the data: {"grade": …, "sentence": …}. */
+IMK_API void imk_result_usability(imk_result *result, imk_usability usability,
+                                  const char *sentence);
+/** Judge the result as a whole: whether it can be used, for what, because of what. The sentence
+ *  becomes the first line of the text and of the page; imk_result_usability() is called, too.
+ *  @param format  one sentence, such as "Usable: no test found a fault." */
+IMK_API void imk_result_judge(imk_result *result, imk_usability usability, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/** @} */
+
 /** Where an element of the display is shown. */
 typedef enum imk_audience {
     IMK_FOR_TERMINAL = 1,

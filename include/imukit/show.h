@@ -62,9 +62,11 @@ IMK_API void imk_show_navigate_log(const imk_navigate_log *n, const char *name, 
 IMK_API void imk_show_simulate_inputs(const imk_simulate_log_settings *settings, const char *model,
                                       const char *motion, const char *temperature, uint64_t runs,
                                       imk_result *result);
-/** Show a log that was written, as data only.
- *  @param key      NULL in an array
+/** Show a log that was written, as members of the object of the data that is open.
  *  @param columns  `column_count` of them, with the units of the file */
+IMK_API void imk_show_file(const char *file, uint64_t rows, size_t column_count,
+                           const imk_log_column *columns, imk_result *result);
+/** The same as an object of its own. @param key  NULL in an array */
 IMK_API void imk_show_written(const char *key, const char *file, uint64_t rows, size_t column_count,
                               const imk_log_column *columns, imk_result *result);
 /** Show the terms taken out, and the counts of the run. @param model  name of the model */
@@ -105,13 +107,6 @@ typedef struct imk_message {
     uint64_t channels;  /**< channels concerned, bit c for channel c; 0: the record as a whole */
     bool told; /**< a finding of the job, which the caller reports with imk_finding_message() */
 } imk_message;
-
-/** What a record can be used for. */
-typedef enum imk_usability {
-    IMK_USABLE = 0,       /**< no test found a fault */
-    IMK_USABLE_WITH_CARE, /**< a fault affects some terms */
-    IMK_NOT_USABLE
-} imk_usability;
 
 /** Assessment of a record: the uses it is good for, and its faults. The memory belongs to the
  *  result. */
@@ -267,6 +262,7 @@ typedef struct imk_evaluate_shown {
     size_t channel_count, rest_count, limit_count;
     const imk_evaluate_channel *channel;
     const imk_evaluate_rest *rest;
+    const imk_findings *findings; /**< of the job; NULL: none */
 } imk_evaluate_shown;
 
 /** Show data, tables and test report. Anything added afterwards goes to the page only. */

@@ -215,7 +215,8 @@ static PyObject *evaluation_show(evaluation *v)
                                       .rest_count = log->rest_count,
                                       .limit_count = v->limit_count,
                                       .channel = log->channel,
-                                      .rest = log->rest};
+                                      .rest = log->rest,
+                                      .findings = &log->findings};
     imk_show_evaluate(&shown, result);
     PyObject *object = make_result(result);
     return object ? Py_BuildValue("(NO)", object, v->findings) : NULL;

@@ -49,13 +49,21 @@ typedef struct drawing {
     double *walked; /* length up to each */
 } drawing;
 
-static axis axis_make(const double *values, size_t count, int begin, int end)
+static void span_values(axis *a, const double *values, size_t count)
 {
-    axis a = {values[0], values[0], begin, end};
-    for (size_t i = 1; i < count; i++) {
-        a.low = fmin(a.low, values[i]);
-        a.high = fmax(a.high, values[i]);
+    for (size_t i = 0; i < count; i++) {
+        a->low = fmin(a->low, values[i]);
+        a->high = fmax(a->high, values[i]);
     }
+}
+
+/* Of the values of the path and of the line behind it. */
+static axis axis_make(const imk_animation *animation, bool upwards, int begin, int end)
+{
+    const double *values = upwards ? animation->y : animation->x;
+    axis a = {values[0], values[0], begin, end};
+    span_values(&a, values, animation->count);
+    span_values(&a, upwards ? animation->law_y : animation->law_x, animation->law_count);
     a.low = fmin(fmax(a.low, -largest), largest);
     a.high = fmin(fmax(a.high, -largest), largest);
     const double span = a.high - a.low;
@@ -297,14 +305,27 @@ static imk_status check(const imk_animation *animation, imk_error *error)
     return IMK_OK;
 }
 
+/* The line behind the path. */
+static void put_law(imki_text *out, const drawing *d)
+{
+    const imk_animation *a = d->animation;
+    if (a->law_count == 0)
+        return;
+    imki_text_put(out, "<path fill=\"none\" stroke=\"#999\" stroke-width=\"18\" d=\"");
+    for (size_t i = 0; i < a->law_count; i++)
+        imki_text_add(out, "%c%d %d", i == 0 ? 'M' : 'L', place(&d->x, a->law_x[i]),
+                      place(&d->y, a->law_y[i]));
+    imki_text_put(out, "\"/>\n");
+}
+
 /* The points of the path in tenths of a pixel, without points that fall on the previous one. */
 static bool drawing_make(drawing *d, const imk_animation *animation)
 {
     const size_t stride = (animation->count + POINTS_MAX - 1) / POINTS_MAX;
     const size_t room = animation->count / stride + 1;
     *d = (drawing){.animation = animation,
-                   .x = axis_make(animation->x, animation->count, LEFT, WIDTH - RIGHT),
-                   .y = axis_make(animation->y, animation->count, HEIGHT - BOTTOM, TOP),
+                   .x = axis_make(animation, false, LEFT, WIDTH - RIGHT),
+                   .y = axis_make(animation, true, HEIGHT - BOTTOM, TOP),
                    .sample = malloc(room * sizeof *d->sample),
                    .last = malloc(room * sizeof *d->last),
                    .px = malloc(room * sizeof *d->px),
@@ -353,6 +374,7 @@ imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t 
     if (!text.failed && status == IMK_OK) {
         const int milliseconds = (int)lround(1000 * animation->duration);
         put_head(out, &d);
+        put_law(out, &d);
         if (animation->points)
             put_jumps(out, &d, milliseconds);
         else

@@ -84,6 +84,14 @@ void imki_page_verdict(imki_page *page, int level, const char *text)
     element(page, open[level < 0 ? 0 : level > 2 ? 2 : level], text, "</p>\n");
 }
 
+void imki_page_judgement(imki_page *page, int level, const char *text)
+{
+    static const char *const open[] = {"<p class=\"judgement good\">",
+                                       "<p class=\"judgement care\">",
+                                       "<p class=\"judgement bad\">"};
+    element(page, open[level < 0 ? 0 : level > 2 ? 2 : level], text, "</p>\n");
+}
+
 /* The first column names the rows. An empty corner is no header. */
 static void put_cell(imki_page *page, const char *cell, size_t row, size_t column, bool right)
 {

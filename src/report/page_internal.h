@@ -24,6 +24,8 @@ imki_page *imki_page_create(const char *title, const char *subtitle, bool whole)
 void imki_page_heading(imki_page *page, const char *text);
 /* A paragraph of plain text (escaped). */
 void imki_page_text(imki_page *page, const char *text);
+/* The judgement, large: 0 usable, 1 with care, 2 not usable. */
+void imki_page_judgement(imki_page *page, int level, const char *text);
 /* A coloured box: 0 good, 1 note, 2 warning. */
 void imki_page_verdict(imki_page *page, int level, const char *text);
 /* A table of rows x columns texts, the first row the header; right: as of imk_result_table(). */

@@ -64,6 +64,27 @@ void imk_result_end(imk_result *result)
         result->open = result->open->parent;
 }
 
+void imk_result_usability(imk_result *result, imk_usability usability, const char *sentence)
+{
+    static const char *const grades[] = {"usable", "usable with care", "not usable"};
+    imk_result_object(result, "usability");
+    imk_result_text(result, "grade", grades[usability]);
+    imk_result_text(result, "sentence", sentence);
+    imk_result_end(result);
+}
+
+void imk_result_judge(imk_result *result, imk_usability usability, const char *format, ...)
+{
+    if (!result)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    result->judgement = imki_arena_format(&result->arena, format, arguments);
+    va_end(arguments);
+    result->usability = usability;
+    imk_result_usability(result, usability, result->judgement);
+}
+
 const char *imk_result_key(imk_result *result, const char *format, ...)
 {
     if (!result)

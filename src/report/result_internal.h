@@ -75,6 +75,8 @@ struct imk_result {
     imki_data root, *open; /* the object or array that is being filled */
     imk_audience audience;
     const char *title, *subtitle;
+    imk_usability usability;
+    const char *judgement; /* NULL: none */
     imki_block *first, *last;
 };
 

@@ -55,6 +55,8 @@ static imk_status render(const imk_result *result, bool whole, char **text, size
         return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
     imki_arena scratch = {.allocator = result->arena.allocator};
     imki_page *page = imki_page_create(result->title, result->subtitle, whole);
+    if (result->judgement)
+        imki_page_judgement(page, (int)result->usability, result->judgement);
     for (const imki_block *b = result->first; b; b = b->next)
         if (b->audience & IMK_FOR_PAGE)
             put_block(page, b, &scratch);

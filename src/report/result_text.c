@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The display of a result for the terminal: lines, and tables aligned by characters, not bytes. */
+/* The display of a result for the terminal: the judgement, lines, and tables aligned by characters,
+ * not bytes. */
 #include "growing_text_internal.h"
 #include "result_internal.h"
 
@@ -85,9 +86,15 @@ imk_status imk_result_to_text(const imk_result *result, const char *bold, const 
     imk_status status = IMK_OK;
     plain = bold && plain ? plain : "";
     bold = bold ? bold : "";
+    if (result->judgement)
+        put_line(&out, result->judgement, bold, plain);
+    bool alone = result->judgement != NULL; /* an empty line below it before anything else */
     for (const imki_block *b = result->first; b && status == IMK_OK; b = b->next) {
-        if (!(b->audience & IMK_FOR_TERMINAL))
+        if (!(b->audience & IMK_FOR_TERMINAL) || b->kind > IMKI_BLOCK_TABLE)
             continue;
+        if (alone && !(b->kind == IMKI_BLOCK_LINE && b->text[0] == '\0'))
+            imki_text_put(&out, "\n");
+        alone = false;
         if (b->kind == IMKI_BLOCK_TABLE)
             status = put_table(&out, &b->table, bold, plain, &scratch);
         else if (b->kind == IMKI_BLOCK_CODE)

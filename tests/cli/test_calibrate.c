@@ -95,7 +95,7 @@ static void closed_loop(void **state)
     write_log();
     assert_int_equal(run("$I calibrate poses.csv " POSES " -o found.yaml"), 0);
     assert_string_equal(err, "");
-    check_contains(out, "Good: accelerometer bias to ", "verdict");
+    check_contains(out, "Usable: accelerometer bias to ", "verdict");
     check_contains(out, "Frame upper-triangular: the z accelerometer senses along body z", "frame");
     check_contains(out, "Gravity 9.80739 m/s^2 (WGS84 at the place given).", "gravity");
     check_contains(out, "Next: imukit compensate LOG found.yaml -o clean.csv\n", "next");
@@ -172,7 +172,9 @@ static void json_has_its_shape(void **state)
     assert_int_equal(json_array_size(json_array_get(correlation, 29)), 30);
     CHECK_CLOSE(json_number_value(json_array_get(json_array_get(correlation, 7), 7)), 1, 1e-12);
     assert_int_equal(json_array_size(json_object_get(result, "poses")), 24);
-    assert_string_equal(json_string_value(json_object_get(result, "level")), "good");
+    assert_string_equal(
+        json_string_value(json_object_get(json_object_get(result, "usability"), "grade")),
+        "usable");
     assert_string_equal(json_string_value(json_object_get(result, "frame")), "upper-triangular");
     const json_t *fit = json_object_get(json_object_get(result, "fit"), "accel");
     CHECK_CLOSE(json_real_value(json_object_get(fit, "factor")), 1, 0.5);

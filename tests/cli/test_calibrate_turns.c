@@ -82,7 +82,7 @@ static void turns_are_shown(void **state)
     check_contains(out, "turns by stated angles  6", line);
     check_contains(out, "the sign of a gyro", line);
     check_contains(out, "axes that are not quite those of the unit", line);
-    check_contains(out, "Good: gyro bias", line);
+    check_contains(out, "Usable: gyro bias", line);
     assert_int_equal(run("$I calibrate turns.csv -p turns --json"), 0);
     json_t *all = json_loads(out, 0, NULL);
     const json_t *result = json_object_get(all, "result");

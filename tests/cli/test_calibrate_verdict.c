@@ -71,7 +71,7 @@ static void check_says(const char *line, int code, const char *where, const char
     if (actual != code)
         fail_msg("%s: code %d, expected %d\n%s%s", line, actual, code, out, err);
     check_contains(where, message, line);
-    assert_null(strstr(out, "Good:"));
+    assert_null(strstr(out, "Usable:"));
 }
 
 /* Columns 2 to 4 are the gyros, 5 to 7 the accelerometers. */
@@ -85,7 +85,7 @@ static void wrong_rates_are_told(void **state)
     assert_int_equal(run("cut -d, -f2- poses.csv >bare.csv"), 0);
     const char *sound = "$I calibrate bare.csv --rate 100Hz " POSES;
     assert_int_equal(run(sound), 0);
-    check_contains(out, "Good: accelerometer", sound);
+    check_contains(out, "Usable: accelerometer", sound);
     check_contains(out, "Cannot be seen in this log: a sampling rate that is some per cent", sound);
     check_says("$I calibrate bare.csv --rate 200Hz -o none.yaml " POSES, 1, out,
                "instead of 200 Hz (the angle of a turn is rate times time: check --rate)");
@@ -125,7 +125,7 @@ static void wrong_ranges_are_told(void **state)
     const char *line = CHANGED("for (i = 2; i < 5; i++) $i *= 1.06");
     assert_int_equal(run(line), 0);
     check_contains(out, "few such sensors err by more than 5 %", line);
-    check_contains(out, "Good: accelerometer", line);
+    check_contains(out, "Usable: accelerometer", line);
     sweep();
 }
 
@@ -258,7 +258,7 @@ static void gravity_of_another_place(void **state)
                "--gravity 9.71000 m/s^2 differs by -0.99 % from gravity at --position");
     const char *line = "$I calibrate poses.csv --gravity 9.8045m/s^2 " POSES;
     assert_int_equal(run(line), 0);
-    check_contains(out, "Good: accelerometer", line);
+    check_contains(out, "Usable: accelerometer", line);
     sweep();
 }
 
@@ -305,7 +305,7 @@ static void one_gyro_about_z(void **state)
                        "z.csv z.yaml -o clean.csv";
     assert_int_equal(run(line), 0);
     check_contains(err, "gyro_z is axis x in the tables and in the model", line);
-    check_contains(out, "Good: gyro bias", line);
+    check_contains(out, "Usable: gyro bias", line);
     check_contains(out, "direction: [0 0 1]", line);
     line = "$I evaluate z.csv --motion table.yaml";
     assert_int_equal(run(line), 0);
@@ -338,7 +338,7 @@ static void clocks_are_compared_with_the_programme(void **state)
     const char *line = "cut -d, -f2-4 poses.csv >bare.csv; $I calibrate bare.csv --rate 100Hz -p "
                        "rate-table --motion table.yaml --without nonlinearity";
     assert_int_equal(run(line), 0);
-    check_contains(out, "Good: gyro", line);
+    check_contains(out, "Usable: gyro", line);
     check_says("$I calibrate bare.csv --rate 98Hz -p rate-table --motion table.yaml --without "
                "nonlinearity",
                0, err, "bare.csv fits the programme");
@@ -391,7 +391,7 @@ static void sound_benches_are_good(void **state)
         const char *line = "$I calibrate poses.csv --strict " POSES;
         if (run(line) != 0)
             fail_msg("bench %u: %s%s", k, out, err);
-        check_contains(out, "Good: accelerometer", line);
+        check_contains(out, "Usable: accelerometer", line);
     }
     sweep();
 }

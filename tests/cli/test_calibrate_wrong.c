@@ -59,7 +59,7 @@ static void few_holds_are_kept(void **state)
     write_turns();
     const char *line = "$I calibrate turns.csv -p ferraris " PLACE " --strict";
     assert_int_equal(run(line), 0);
-    check_contains(out, "Good: accelerometer", line);
+    check_contains(out, "Usable: accelerometer", line);
     assert_null(strstr(out, "Left out"));
     sweep();
 }
@@ -214,7 +214,7 @@ static void blank_labels_are_no_pose(void **state)
         "$I calibrate named.csv -p sixposition " PLACE " --strict";
     assert_int_equal(run(line), 0);
     check_contains(out, "accelerometer readings  18        0", line);
-    check_contains(out, "Good: ", line);
+    check_contains(out, "Usable: ", line);
     sweep();
 }
 

@@ -34,7 +34,10 @@ static void test_every_column(void **state)
         "model's terms, so the nearer end of the range was used: 1 of 4 samples (first: row "
         "4)\nimukit compensate: warning: readings that are not finite, or no temperature yet; "
         "values that depend on these are nan: 1 of 4 samples (first: row 3)\nimukit compensate: "
-        "warning: gaps and steps back in time: 1 (first: row 4); each begins a new stretch\nTaken "
+        "warning: gaps and steps back in time: 1 (first: row 4); each begins a new stretch\nUsable "
+        "with care: 3 of 4 samples are flagged, 1 saturated, 1 outside the temperatures of the "
+        "model, 1 with a reading that is not finite; gaps and steps back in time; 5 terms are "
+        "taken out, and 1 stay in.\n\nTaken "
         "out: gyro.bias.fixed, gyro.bias.temperature, gyro.sensitivity, accel.bias.fixed, "
         "accel.scale_factor.fixed\nLeft in: gyro.bias.hysteresis\n4 samples, 3 flagged\n");
     assert_string_equal(out, "");
@@ -110,7 +113,10 @@ static void test_refusals(void **state)
                   "imukit compensate: warning: left.yaml describes the errors that remain after "
                   "compensation with first.yaml; compensate with that model first\nimukit "
                   "compensate: warning: left.yaml has no deterministic term: there is nothing to "
-                  "take out\nTaken out: nothing\nLeft in: gyro.noise\n2 samples, 0 flagged\n");
+                  "take out\nNot usable: the model describes the errors that remain after "
+                  "compensation with first.yaml; the model has no deterministic term; 0 terms are "
+                  "taken out, and 1 stay in.\n\n"
+                  "Taken out: nothing\nLeft in: gyro.noise\n2 samples, 0 flagged\n");
     assert_int_equal(run("cmp gyro.csv left.csv"), 0);
     sweep();
 }

@@ -29,6 +29,8 @@ static void test_table(void **state)
     assert_int_equal(run("$I evaluate t.csv"), 0);
     assert_string_equal(err, "");
     assert_string_equal(out,
+                        "Usable: the scale factor is known to 158 ppm; linearity is 0.254 % of "
+                        "full scale or better.\n\n"
                         "reading: 120 readings at 21 levels in 1 run; full scale 10 deg/s; noise "
                         "from replicates (79 degrees of freedom)\n"
                         "\n"
@@ -43,11 +45,12 @@ static void test_table(void **state)
                         "linearity, best line              0.150        0.109 … 0.179  %\n"
                         "hysteresis                        0.200        0.077 … 0.281  %\n"
                         "asymmetry (K+ - K-)/K              5994          5367 … 6621  ppm\n"
-                        "resolution                         1.00          0.00 … 1.00  deg/s\n"
-                        "threshold                          1.00          0.00 … 1.00  deg/s\n"
+                        "resolution                            -           up to 1.00  deg/s\n"
+                        "threshold                             -           up to 1.00  deg/s\n"
                         "\n"
-                        "Every step gave its change, down to 1 deg/s, the smallest tested step "
-                        "that exceeds the noise: the resolution is this step or finer.\n");
+                        "Every step that exceeds the noise gave its change, down to 1 deg/s: the "
+                        "resolution and the threshold are finer than what was tested. To find "
+                        "them, test smaller steps.\n");
     sweep();
 }
 
@@ -155,6 +158,12 @@ static void test_limits(void **state)
                   "imukit evaluate: warning: reading: hysteresis is beyond its limit (limit 0.1 "
                   "%)\n");
     check_contains(out, "not met\n", out);
+    /* All steps of 1 deg/s passed: the resolution is within 1, and nothing tells of less. */
+    check_message("$I evaluate t.csv --strict --limit 'resolution 1 deg/s, threshold 2 deg/s'", 0,
+                  "");
+    check_message("$I evaluate t.csv --limit 'resolution 0.5 deg/s'", 0,
+                  "imukit evaluate: warning: reading: resolution is not determined (limit 0.5 "
+                  "deg/s)\n");
     check_message("$I evaluate t.csv --limit 'histeresis 0.1 %'", 2,
                   "imukit evaluate: error: --limit: there is no figure \"histeresis\"; did you "
                   "mean \"hysteresis\"?\n" TRY("evaluate"));

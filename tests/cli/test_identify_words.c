@@ -351,7 +351,7 @@ static void test_motion_that_wanders(void **state)
     double found = 0;
     const char *row = strstr(out, "angle random walk");
     assert_non_null(row);
-    assert_int_equal(sscanf(row, "angle random walk deg/sqrt(h) %lf", &found), 1);
+    assert_int_equal(sscanf(row, "angle random walk %*s %lf", &found), 1);
     CHECK_CLOSE(found, 0.3, 0.002);
     sweep();
 }

@@ -328,6 +328,8 @@ static void test_selected_correction(void **state)
         "$I compensate log.csv unit.yaml --only bias -o - --flags", 0,
         "imukit compensate: warning: saturated, at or beyond the range of an axis: 1 of 2 "
         "samples (first: row 2)\n"
+        "Usable with care: 1 of 2 samples are flagged, 1 saturated; 1 term is taken out, and 1 "
+        "stay in.\n\n"
         "Taken out: gyro.bias.fixed\nLeft in: gyro.scale_factor.fixed\n"
         "2 samples, 1 flagged\n");
     assert_string_equal(out, "time [s],gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s],flags\n"

@@ -59,8 +59,8 @@ static void test_figures_are_inline(void **state)
     (void)state;
     double x[] = {1, 2, 3}, y[] = {1, 4, 9};
     imk_curve curve = {"squares", IMK_CURVE_POINTS, 0, 3, x, y, NULL, NULL};
-    imk_panel panel = {"url(#x id=\"y", "x", "y",  false,         false, 1,
-                       &curve,          0,   NULL, IMK_KEY_UPPER, NULL,  false};
+    imk_panel panel = {"url(#x id=\"y", "x",  "y",   false, false, 1, &curve, 0, NULL,
+                       IMK_KEY_UPPER,   NULL, false, 0,     0};
     imk_figure figure = {"", 1, 1, &panel};
     imki_page *page = imki_page_create("t", "s", true);
     imki_page_figure(page, &figure, "first");

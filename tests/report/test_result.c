@@ -154,6 +154,31 @@ static void test_text(void **state)
     imk_result_free(r);
 }
 
+/* The judgement comes first everywhere, wherever it was made. */
+static void test_judgement(void **state)
+{
+    (void)state;
+    char *text;
+    size_t size;
+    imk_error error;
+    imk_result *r = imk_result_create(NULL);
+    imk_result_line(r, "first");
+    imk_result_object(r, "result");
+    imk_result_judge(r, IMK_USABLE_WITH_CARE, "Usable with care: %d < 3\x1b.", 2);
+    imk_result_end(r);
+    assert_int_equal(imk_result_to_text(r, NULL, NULL, &text, &size), IMK_OK);
+    assert_string_equal(text, "Usable with care: 2 < 3?.\n\nfirst\n");
+    free(text);
+    assert_int_equal(imk_result_to_page(r, &text, &size, &error), IMK_OK);
+    const char *judgement = strstr(text, "<p class=\"judgement care\">Usable with care: 2 &lt; 3");
+    assert_non_null(judgement);
+    assert_true(judgement < strstr(text, "<p>first"));
+    free(text);
+    assert_string_equal(imk_result_find(r, "result.usability.grade"), "usable with care");
+    imk_result_free(r);
+    imk_result_judge(NULL, IMK_USABLE, "Usable.");
+}
+
 /* Names of strangers are no commands to a terminal; what stands out is marked. */
 static void test_line(void **state)
 {
@@ -308,15 +333,11 @@ static void test_readable(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_json),
-        cmocka_unit_test(test_text),
-        cmocka_unit_test(test_line),
-        cmocka_unit_test(test_figure),
-        cmocka_unit_test(test_key),
-        cmocka_unit_test(test_page),
-        cmocka_unit_test(test_read),
-        cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_memory_of_renderers),
+        cmocka_unit_test(test_json),      cmocka_unit_test(test_text),
+        cmocka_unit_test(test_judgement), cmocka_unit_test(test_line),
+        cmocka_unit_test(test_figure),    cmocka_unit_test(test_key),
+        cmocka_unit_test(test_page),      cmocka_unit_test(test_read),
+        cmocka_unit_test(test_memory),    cmocka_unit_test(test_memory_of_renderers),
         cmocka_unit_test(test_readable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

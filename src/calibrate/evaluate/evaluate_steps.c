@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Resolution and threshold: the smallest change of the reference from which on every tested one
- * gives at least half of the expected change of the reading [IEEE528]. Changes are those between
- * successive holds of a run, and from the run's mean reading at rest: at the level nearest to 0,
- * when that is ten times nearer than the next one (a reference in inertial space has the Earth's
- * rate). */
+ * gives at least half of the expected change of the reading [IEEE528]. Where every tested change
+ * does, the figure has no value, only its upper end: it is finer than what was tested. Changes are
+ * those between successive holds of a run, and from the run's mean reading at rest: at the level
+ * nearest to 0, when that is ten times nearer than the next one (a reference in inertial space has
+ * the Earth's rate). */
 #include "evaluate_internal.h"
 
 #include "imukit/distributions.h"
@@ -61,13 +62,13 @@ static void count_step(summary *s, const change *step)
 
 static void find_failures(summary *s, const change *step)
 {
-    const bool assessed = step->half < 0.5;
-    if (assessed && step->part < 0.5)
+    const bool assessed = step->half < 0.5, bad = step->part + step->half < 0.5;
+    if (bad || (assessed && step->part < 0.5))
         s->failed = fmax(s->failed, step->amount);
+    if (bad)
+        s->bad = fmax(s->bad, step->amount);
     if (assessed)
         s->smallest = fmin(s->smallest, step->amount);
-    if (step->part + step->half < 0.5)
-        s->bad = fmax(s->bad, step->amount);
     if (!(step->part - step->half >= 0.5))
         s->doubtful = fmax(s->doubtful, step->amount);
 }
@@ -163,7 +164,7 @@ static imk_evaluation_figure smallest_step(const imki_evaluation *e, const zeros
     visit_steps(e, zero, quantile, find_successes, &s);
     *tested = s.smallest < HUGE_VAL ? s.smallest : (double)NAN;
     const bool intervals = e->result->source != IMK_SCATTER_NONE;
-    return (imk_evaluation_figure){s.passed < HUGE_VAL ? s.passed : (double)NAN,
+    return (imk_evaluation_figure){s.failed > 0.0 ? s.passed : (double)NAN,
                                    intervals ? s.bad : (double)NAN,
                                    intervals && s.sure < HUGE_VAL ? s.sure : (double)NAN};
 }

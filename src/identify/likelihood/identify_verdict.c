@@ -4,6 +4,28 @@
 
 #include <math.h>
 
+int imk_identification_count(const imk_identification *result, imk_identified_kind kind)
+{
+    const int count[IMK_IDENTIFIED_KINDS] = {result->gauss_markov_count, result->sinusoid_count,
+                                             result->resonance_count, result->rounding > 0};
+    return count[kind];
+}
+
+double imk_identification_part_allan_variance(const imk_identification *result,
+                                              imk_identified_kind kind, int index, double dt,
+                                              size_t m)
+{
+    if (kind == IMK_IDENTIFIED_ROUNDING)
+        return imk_white_sampled_allan_variance(result->rounding, dt, m);
+    if (kind == IMK_IDENTIFIED_SINUSOID)
+        return imk_sinusoid_sampled_allan_variance(result->sinusoid[index], dt, m);
+    if (kind == IMK_IDENTIFIED_RESONANCE)
+        return imk_resonance_sampled_allan_variance(result->resonance[index], dt, m);
+    const imk_gauss_markov g = {result->gauss_markov[index].sigma.value,
+                                result->gauss_markov[index].correlation_time.value};
+    return imk_gauss_markov_sampled_allan_variance(g, dt, m);
+}
+
 double imk_identification_allan_variance(const imk_identification *result, double dt, size_t m,
                                          int term)
 {
@@ -23,15 +45,10 @@ double imk_identification_allan_variance(const imk_identification *result, doubl
     double sum = imk_white_sampled_allan_variance(result->rounding, dt, m);
     for (int i = 0; i < IMK_NOISE_TERMS; i++)
         sum += part[i];
-    for (int i = 0; i < result->gauss_markov_count; i++) {
-        const imk_gauss_markov g = {result->gauss_markov[i].sigma.value,
-                                    result->gauss_markov[i].correlation_time.value};
-        sum += imk_gauss_markov_sampled_allan_variance(g, dt, m);
-    }
-    for (int i = 0; i < result->sinusoid_count; i++)
-        sum += imk_sinusoid_sampled_allan_variance(result->sinusoid[i], dt, m);
-    for (int i = 0; i < result->resonance_count; i++)
-        sum += imk_resonance_sampled_allan_variance(result->resonance[i], dt, m);
+    for (int kind = 0; kind < IMK_IDENTIFIED_ROUNDING; kind++)
+        for (int i = 0; i < imk_identification_count(result, (imk_identified_kind)kind); i++)
+            sum +=
+                imk_identification_part_allan_variance(result, (imk_identified_kind)kind, i, dt, m);
     return sum;
 }
 

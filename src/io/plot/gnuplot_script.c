@@ -189,11 +189,20 @@ static void write_curve(imki_text *out, const imk_curve *curve, size_t index, co
     }
 }
 
+/* A limit that is infinite is that of the frame. */
+static void limit(imki_text *out, double value)
+{
+    if (isinf(value))
+        imki_text_put(out, value > 0 ? "graph 1" : "graph 0");
+    else
+        number(out, value);
+}
+
 static void corner(imki_text *out, double x, double y)
 {
-    number(out, x);
+    limit(out, x);
     imki_text_put_char(out, ',');
-    number(out, y);
+    limit(out, y);
 }
 
 static void write_rectangle(imki_text *out, size_t number_of, const imk_region *region)

@@ -37,14 +37,14 @@ static void assess(size_t count, const imk_evaluate_limit *limits, imk_evaluate_
     if (!limit)
         return;
     row->limit = limit->text;
-    if (!isfinite(f->value))
+    /* Not a number is not within. */
+    const bool within = fabs(f->upper) <= most && (!row->is_signed || fabs(f->lower) <= most);
+    if (within && !(fabs(f->value) > most))
+        row->verdict = IMK_EVALUATE_MET;
+    else if (!isfinite(f->value))
         row->verdict = IMK_EVALUATE_UNKNOWN;
-    else if (fabs(f->value) > most)
-        row->verdict = IMK_EVALUATE_NOT_MET;
-    else /* not a number is not within */
-        row->verdict = fabs(f->upper) <= most && (!row->is_signed || fabs(f->lower) <= most)
-                           ? IMK_EVALUATE_MET
-                           : IMK_EVALUATE_DOUBTFUL;
+    else
+        row->verdict = fabs(f->value) > most ? IMK_EVALUATE_NOT_MET : IMK_EVALUATE_DOUBTFUL;
 }
 
 const char *imk_evaluate_verdict_text(imk_evaluate_verdict verdict)

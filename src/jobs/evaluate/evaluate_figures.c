@@ -65,7 +65,8 @@ static const definition definitions[] = {
      IN_PPM, PLAIN, true, AT(asymmetry), 0},
     {"resolution", "resolution",
      "Smallest step of the reference such that it and all larger tested steps changed the reading "
-     "by at least half of the change expected from the sensitivity.",
+     "by at least half of the change expected from the sensitivity. It has no value where all "
+     "tested steps did.",
      IN_REFERENCE, PLAIN, false, AT(resolution), 0},
     {"threshold", "threshold", "Resolution for changes of the reference from 0.", IN_REFERENCE,
      PLAIN, false, AT(threshold), 0},

@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* More points than this are not seen. */
-enum { VIEW_POINTS = 5000 };
+/* More points than this are not seen; a law is a smooth curve. */
+enum { VIEW_POINTS = 5000, LAW_POINTS = 500 };
 
 const char *imki_physics_label(char *text, const char *name, const char *unit)
 {
@@ -27,16 +27,18 @@ const char *imki_physics_label(char *text, const char *name, const char *unit)
     return text;
 }
 
-/* The view's own input, unless another was asked for. */
+/* The view's own input, unless another was asked for. Where a rate was, the force of the view is
+ * what it shows. */
 static imk_physics_input input_of(const imk_physics_log_settings *settings, const imk_view *view)
 {
     imk_physics_input input = settings->input;
-    if (!settings->view_input) {
-        const bool gyro = settings->instrument->sensor == IMK_GYRO;
-        (gyro ? input.exposure.angular_rate : input.exposure.specific_force)[0] = view->input;
-        if (gyro)
-            input.exposure.specific_force[0] = view->force;
-    }
+    double *force = input.exposure.specific_force;
+    const bool gyro = settings->instrument->sensor == IMK_GYRO;
+    const bool forced = force[0] != 0 || force[1] != 0 || force[2] != 0;
+    if (!settings->view_input)
+        (gyro ? input.exposure.angular_rate : force)[0] = view->input;
+    if (gyro && (!settings->view_input || !forced))
+        force[0] = view->force;
     return input;
 }
 
@@ -51,6 +53,37 @@ static imk_status refuse_signal(const imk_instrument *instrument, const char *na
         "or the input nearer to 0",
         instrument->name);
     return imk_error_set(error, IMK_ERROR_NOT_FINITE, "", found, expected);
+}
+
+/* Of more samples than rows, against time: two rows hold the least and the greatest of a stretch,
+ * in their order, so that what is quicker than the rows is seen in its size. */
+static bool keeps_extremes(const imk_view *view, uint64_t stride)
+{
+    return view->x < 0 && stride > 1;
+}
+
+static void keep_extremes(double *row, bool first, double value)
+{
+    const double least = fmin(row[0], row[1]), greatest = fmax(row[0], row[1]);
+    if (first) {
+        row[0] = row[1] = value;
+    } else if (value < least) {
+        row[0] = greatest;
+        row[1] = value;
+    } else if (value > greatest) {
+        row[0] = least;
+        row[1] = value;
+    }
+}
+
+/* Put sample k into column c, 0: x. */
+static void keep(const imk_physics_view *v, int c, uint64_t stride, uint64_t k, double value)
+{
+    double *column = v->data + (size_t)c * v->points;
+    if (c > 0 && keeps_extremes(&v->view, stride))
+        keep_extremes(column + 2 * (k / (2 * stride)), k % (2 * stride) == 0, value);
+    else if ((k + 1) % stride == 0)
+        column[k / stride] = value;
 }
 
 /* Rows of x, y … in display units into `data`. */
@@ -69,9 +102,8 @@ static imk_status record(const imk_physics_log_settings *settings, const imk_phy
     for (uint64_t k = 0; k < v->points * stride; k++) {
         const imk_exposure e = imk_physics_input_at(&input, view->rate, settle + k);
         instrument->step(state, &e, outputs);
-        if ((k + 1) % stride != 0)
+        if ((k + 1) % stride != 0 && !keeps_extremes(view, stride))
             continue;
-        const size_t row = (size_t)(k / stride);
         instrument->observe(state, inside);
         for (int c = -1; c < view->curve_count; c++) {
             const int signal = c < 0 ? view->x : view->y[c];
@@ -80,10 +112,42 @@ static imk_status record(const imk_physics_log_settings *settings, const imk_phy
             const double value = signal < 0 ? time : inside[signal];
             if (!isfinite(value))
                 return refuse_signal(instrument, instrument->signals[signal].name, time, error);
-            v->data[(size_t)(c + 1) * v->points + row] = (value - unit.offset) / unit.scale;
+            keep(v, c + 1, stride, k, (value - unit.offset) / unit.scale);
         }
     }
     return IMK_OK;
+}
+
+/* The line from the first to the last point is taken out. */
+static void take_out_ramp(const imk_physics_view *v)
+{
+    const size_t last = v->points - 1;
+    for (int c = 1; c <= v->view.curve_count; c++) {
+        double *y = v->data + (size_t)c * v->points;
+        const double begin = y[0], slope = (y[last] - begin) / (double)last;
+        for (size_t i = 0; i <= last; i++)
+            y[i] -= begin + slope * (double)i;
+    }
+}
+
+/* The law over the range of x, behind the curves. */
+static void add_law(const void *design, imk_physics_view *v)
+{
+    const imk_view *view = &v->view;
+    const imk_unit x_unit = imk_unit_of(v->instrument->signals[view->x].unit);
+    const imk_unit y_unit = imk_unit_of(v->instrument->signals[view->y[0]].unit);
+    double *x = v->data + (size_t)(view->curve_count + 1) * v->points, *y = x + LAW_POINTS;
+    double low = v->data[0], high = v->data[0];
+    for (size_t i = 1; i < v->points; i++) {
+        low = fmin(low, v->data[i]);
+        high = fmax(high, v->data[i]);
+    }
+    v->law_points = LAW_POINTS;
+    for (int i = 0; i < LAW_POINTS; i++) {
+        x[i] = low + (high - low) * i / (LAW_POINTS - 1);
+        y[i] =
+            (view->law(design, x[i] * x_unit.scale + x_unit.offset) - y_unit.offset) / y_unit.scale;
+    }
 }
 
 /* The time axis of a short view is in ms or us. @return its unit */
@@ -109,6 +173,8 @@ static void label_view(const char *x_unit, imk_physics_view *v)
         length += (size_t)snprintf(names + length, sizeof names - length, "%s%s", c > 0 ? ", " : "",
                                    signals[view->y[c]].name);
     imki_physics_label(v->x_label, view->x < 0 ? "time" : signals[view->x].name, x_unit);
+    if (view->less_ramp && length < 32)
+        snprintf(names + length, sizeof names - length, " less its ramp");
     imki_physics_label(v->y_label, length > 48 ? "" : names, signals[view->y[0]].unit);
     snprintf(v->clock, sizeof v->clock, "a round: %.4g %s", view->duration / unit.scale, unit.text);
 }
@@ -134,6 +200,19 @@ static bool is_empty(const imk_physics_view *v)
         if (!is_constant(v->points, y + (size_t)c * v->points))
             return false;
     return true;
+}
+
+static void finish(const void *design, imk_physics_view *v)
+{
+    const imk_view *view = &v->view;
+    if (view->less_ramp)
+        take_out_ramp(v);
+    if (view->law)
+        add_law(design, v);
+    label_view(view->x < 0 ? scale_time(view, v->points, v->data)
+                           : v->instrument->signals[view->x].unit,
+               v);
+    v->empty = is_empty(v);
 }
 
 imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t index,
@@ -162,11 +241,14 @@ imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t
         return imki_refuse(error, IMK_ERROR_RANGE, "view", samples, samples < 2 ? 2 : 1e9, NULL);
     const uint64_t stride = (uint64_t)floor(samples + 0.5) / VIEW_POINTS + 1;
     v->points = (size_t)((uint64_t)floor(samples + 0.5) / stride);
+    if (keeps_extremes(view, stride))
+        v->points -= v->points % 2;
     imki_arena arena = {.allocator = job->allocator};
     const size_t size = instrument->state_size;
     void *state = imki_arena_take(&arena, size > 256 ? size : 256); /* a cache line begins there */
     v->data = imki_resize(&job->allocator, NULL,
-                          ((size_t)(view->curve_count + 1) * v->points + 1) * sizeof *v->data);
+                          ((size_t)(view->curve_count + 1) * v->points + 2 * LAW_POINTS) *
+                              sizeof *v->data);
     imk_physics_settings physics = settings->physics;
     physics.rate = view->rate;
     physics.duration = view->settle + view->duration;
@@ -180,12 +262,8 @@ imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t
                  : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (status == IMK_OK)
         status = record(settings, v, stride, state, error);
-    if (status == IMK_OK) {
-        label_view(view->x < 0 ? scale_time(view, v->points, v->data)
-                               : instrument->signals[view->x].unit,
-                   v);
-        v->empty = is_empty(v);
-    }
+    if (status == IMK_OK)
+        finish(settings->design, v);
     imki_arena_free(&arena);
     return status;
 }

@@ -229,7 +229,9 @@ static const imk_view views[] = {
      .duration = 600e-6,
      .rate = 1e6,
      .input = 25.0 * IMKI_DEGREE,
-     .points = true},
+     .points = true,
+     .law = imki_fibre_optic_fringe,
+     .law_name = "fringe"},
     {.title = "The ramp and its resets",
      .caption = "The phase of the digital ramp: its slope cancels the rotation, and it falls back "
                 "by 2 pi.",

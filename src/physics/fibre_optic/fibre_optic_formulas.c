@@ -87,6 +87,12 @@ imki_fibre_optic_point imki_fibre_optic_operate(const imk_fibre_optic *design)
     return point;
 }
 
+double imki_fibre_optic_fringe(const void *design, double phase)
+{
+    const imk_fibre_optic *d = design;
+    return imki_fibre_optic_operate(d).half_power * (1.0 + d->visibility * imk_cos(phase));
+}
+
 static double noise_of(const imki_fibre_optic_point *point, double power)
 {
     return point->noise[0] + power * (point->noise[1] + power * point->noise[2]);

@@ -22,6 +22,8 @@ typedef struct imki_fibre_optic_point {
 } imki_fibre_optic_point;
 
 imki_fibre_optic_point imki_fibre_optic_operate(const imk_fibre_optic *design);
+/* Power on the detector at a phase between the two waves: the raised cosine [W]. */
+double imki_fibre_optic_fringe(const void *design, double phase);
 /* P0/2 V sin b or P0 V J1(b) of the nominal design: what the electronics divide by. */
 double imki_fibre_optic_nominal_slope(const imk_fibre_optic *design);
 /* Density of the demodulated power at phase 0, one-sided [W^2/Hz], without the converter. */

@@ -129,7 +129,7 @@ static const imk_view views[] = {
      .curve_count = 2,
      .y = {OUTER, INNER},
      .duration = 60.0,
-     .rate = 10.0},
+     .rate = 2000.0},
     {.title = "Nutation dies away",
      .caption = "Amplitude of the nutation. Friction of the bearings reduces it: dry friction by "
                 "equal steps, viscous friction by equal fractions",

@@ -101,13 +101,15 @@ static const imk_view views[] = {
      .duration = 4e-3,
      .rate = 500e3},
     {.title = "Kicks at the turns of the dither",
-     .caption = "The phase of the beat less that of the dither. Quantum noise makes it wander; "
-                "lock-in kicks it, twice a cycle, where the beat turns round.",
+     .caption = "The phase of the beat less that of the dither and the ramp of the input. Quantum "
+                "noise makes it wander; lock-in kicks it, twice a cycle, where the beat turns "
+                "round.",
      .x = -1,
      .curve_count = 1,
      .y = {SLOW_PHASE},
      .duration = 20e-3,
-     .rate = 200e3},
+     .rate = 200e3,
+     .less_ramp = true},
     {.title = "The pull of lock-in",
      .caption = "Backscatter pulls the rate up and down with every fringe; only where the beat is "
                 "slow does it pull one way for long.",

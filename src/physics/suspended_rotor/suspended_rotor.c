@@ -94,8 +94,8 @@ static const imk_signal outputs[] = {
     {"rate", "rad/s", "deg/s", "rate about case x, less the part along the spin axis"},
     {"rate_y", "rad/s", "deg/s", "rate about case y, less the part along the spin axis"},
     {"cosine_x", "1", "1", "reading: direction cosine of the spin axis along x"},
-    {"cosine_y", "1", "1", "the same along y"},
-    {"cosine_z", "1", "1", "the same along z"},
+    {"cosine_y", "1", "1", "reading: direction cosine of the spin axis along y"},
+    {"cosine_z", "1", "1", "reading: direction cosine of the spin axis along z"},
 };
 
 static const imk_signal signals[] = {

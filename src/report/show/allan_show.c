@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The display of Allan deviations: data, tables, a figure. */
-#include "imukit/channel_units.h"
-#include "imukit/show.h"
+#include "show_internal.h"
 
+#include <math.h>
 #include <stdio.h>
 
 imk_unit imk_allan_log_unit(const imk_allan_log *allan, size_t channel,
@@ -113,6 +113,87 @@ static void show_tables(const imk_allan_log *a, imk_result *result)
     imk_result_line(result, "In brackets: %g %% confidence.", 100 * a->settings.confidence);
 }
 
+/* ---- judgement ------------------------------------------------------------------------------- */
+
+/* A deviation whose interval ends less than this part above it can be read off; a value of which
+ * nothing is known but that it is not twice as large cannot. */
+static const double known_well = 0.3, known_at_all = 1;
+
+/* How far above the deviations their intervals end at averaging time `i`, at worst. */
+static double uncertainty_at(const imk_allan_log *a, size_t k, size_t i)
+{
+    double most = 0;
+    for (size_t c = 0; c < a->record.count; c++) {
+        const imk_allan_curve *curve = &a->curve[c][k];
+        most = i < curve->count ? fmax(most, curve->upper[i] / curve->deviation[i] - 1) : HUGE_VAL;
+    }
+    return most;
+}
+
+/* Curves that still fall at averaging time `last`, whose floor is not seen. */
+static size_t falling(const imk_allan_log *a, size_t k, size_t last)
+{
+    size_t count = 0;
+    for (size_t c = 0; c < a->record.count; c++) {
+        const double *deviation = a->curve[c][k].deviation;
+        bool lowest = true;
+        for (size_t i = 0; i < last; i++)
+            lowest = lowest && deviation[i] > deviation[last];
+        count += lowest;
+    }
+    return count;
+}
+
+static void judge_floors(const imk_allan_log *a, size_t k, size_t last, imki_reasons *reasons)
+{
+    const size_t count = falling(a, k, last);
+    if (a->settings.phase || a->settings.statistic[k] == IMK_ALLAN_TIME || count == 0)
+        return;
+    if (count == a->record.count)
+        imki_reason(reasons, "no curve has reached its floor there");
+    else
+        imki_reason(reasons, "%zu of %zu curves have not reached their floor there", count,
+                    a->record.count);
+}
+
+/* To which averaging time the first statistic can be read. */
+static void judge(const imk_allan_log *a, imk_result *result)
+{
+    imki_reasons reasons = {.result = result};
+    char use[80] = "";
+    size_t k = 0, points = 0;
+    while (k + 1 < a->settings.statistic_count && a->curve[0][k].count == 0)
+        k++;
+    const imk_allan_curve *curve = &a->curve[0][k];
+    while (points < curve->count && uncertainty_at(a, k, points) <= known_well)
+        points++;
+    const bool poor = points == 0;
+    while (points < curve->count && poor && uncertainty_at(a, k, points) <= known_at_all)
+        points++;
+    if (points > 0)
+        snprintf(use, sizeof use, " up to tau = %.4g s", curve->tau[points - 1]);
+    imki_reasons_of_warnings(&reasons, &a->findings);
+    const imk_usability usability = points == 0                ? IMK_NOT_USABLE
+                                    : poor || reasons.told > 0 ? IMK_USABLE_WITH_CARE
+                                                               : IMK_USABLE;
+    if (points == 0)
+        imki_reason(&reasons,
+                    "no deviation is known to a factor of two, as the record has only %zu rows",
+                    a->record.rows);
+    else if (points < curve->count && isfinite(uncertainty_at(a, k, curve->count - 1)))
+        imki_reason(&reasons, "each deviation is known to %.0f %% there, and to %.0f %% at %.4g s",
+                    100 * uncertainty_at(a, k, points - 1),
+                    100 * uncertainty_at(a, k, curve->count - 1), curve->tau[curve->count - 1]);
+    else
+        imki_reason(&reasons, "each deviation is known to %.0f %% there",
+                    100 * uncertainty_at(a, k, points - 1));
+    if (points > 0)
+        judge_floors(a, k, points - 1, &reasons);
+    imki_judge(&reasons, usability, use);
+}
+
+/* ---- data ------------------------------------------------------------------------------------ */
+
 static void show_points(const imk_allan_curve *curve, imk_unit unit, imk_result *result)
 {
     imk_result_array(result, "points");
@@ -157,6 +238,7 @@ static void show_data(const imk_allan_log *a, const char *name, imk_result *resu
     imk_result_text(result, "bias", biases[s->bias]);
     imk_result_end(result);
     imk_result_object(result, "result");
+    judge(a, result);
     imk_result_array(result, "channels");
     for (size_t c = 0; c < a->record.count; c++)
         for (size_t k = 0; k < s->statistic_count; k++) {
@@ -169,6 +251,8 @@ static void show_data(const imk_allan_log *a, const char *name, imk_result *resu
     imk_result_end(result);
     imk_result_end(result);
 }
+
+/* ---- figure ---------------------------------------------------------------------------------- */
 
 static void show_curve(const imk_allan_curve *curve, const char *name, int color, double scale,
                        imk_figure_builder *figure)

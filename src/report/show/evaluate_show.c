@@ -93,6 +93,7 @@ static void show_data(const imk_evaluate_shown *v, imk_result *result)
     imk_result_number(result, "confidence", v->confidence);
     imk_result_end(result);
     imk_result_object(result, "result");
+    imki_judge_evaluation(v, result);
     imk_result_array(result, "channels");
     for (size_t k = 0; k < v->channel_count; k++)
         show_channel_data(&v->channel[k], result);
@@ -114,11 +115,12 @@ static void show_data(const imk_evaluate_shown *v, imk_result *result)
 static void number(double value, double spread, char text[NUMBER])
 {
     imk_readable_value(value, spread, 4, text, NUMBER);
-    if (text[0] == '-' && text[strspn(text, "-0.")] == '\0') /* rounded to nothing */
+    if (value < 0 && text[strspn(text, "-0.")] == '\0') /* rounded to nothing */
         imk_readable_value(0, spread, 4, text, NUMBER);
 }
 
-/* "1.20 … 1.45", "above 0.1" where one end is open. */
+/* "1.20 … 1.45", "above 0.1" where one end is open, "up to 0.5" where nothing says that the figure
+ * is not 0. */
 static void add_interval(const imk_evaluate_row *row, imk_table *table)
 {
     const double scale = row->unit.scale, low = row->figure.lower / scale;
@@ -126,7 +128,7 @@ static void add_interval(const imk_evaluate_row *row, imk_table *table)
     char a[NUMBER], b[NUMBER];
     number(low, spread, a);
     number(high, spread, b);
-    if (isfinite(low) && isfinite(high))
+    if (isfinite(low) && isfinite(high) && isfinite(row->figure.value))
         imk_table_add(table, "%s … %s", a, b);
     else if (isfinite(low) && low > 0)
         imk_table_add(table, "above %s", a);
@@ -207,6 +209,25 @@ static void show_basis(const imk_evaluate_channel *c, imk_result *result)
         freedom);
 }
 
+/* Where all steps passed, resolution and threshold have no value. */
+static void show_untested_steps(const imk_evaluate_channel *c, imk_result *result)
+{
+    const imk_evaluation *r = &c->result;
+    const bool steps = isnan(r->resolution.value) && isfinite(r->smallest_step);
+    const bool inputs = isnan(r->threshold.value) && isfinite(r->smallest_input);
+    const double smallest = steps ? r->smallest_step : r->smallest_input;
+    if (steps || inputs)
+        imk_result_line(result,
+                        "Every %s that exceeds the noise gave its change, down to %.6g %s: the %s "
+                        "finer than what was tested. To find %s, test smaller steps.",
+                        steps ? "step" : "change from rest", smallest / c->reference_unit.scale,
+                        c->reference_unit.text,
+                        !inputs  ? "resolution is"
+                        : !steps ? "threshold is"
+                                 : "resolution and the threshold are",
+                        steps && inputs ? "them" : "it");
+}
+
 /* What a reader should know beside the numbers. */
 static void show_remarks(const imk_evaluate_channel *c, imk_result *result)
 {
@@ -219,11 +240,7 @@ static void show_remarks(const imk_evaluate_channel *c, imk_result *result)
     if (r->source == IMK_SCATTER_REPLICATES && r->precision.value == 0)
         imk_result_line(result, "Repeated readings are all equal: the output's resolution hides "
                                 "the noise, and the intervals do not contain it.");
-    if (r->resolution.value <= r->smallest_step)
-        imk_result_line(result,
-                        "Every step gave its change, down to %.6g %s, the smallest tested step "
-                        "that exceeds the noise: the resolution is this step or finer.",
-                        r->smallest_step / c->reference_unit.scale, c->reference_unit.text);
+    show_untested_steps(c, result);
     if (!c->settings.same_unit)
         imk_result_line(result,
                         "Readings in %s cannot be compared with a reference in %s: for the "
@@ -252,39 +269,25 @@ static void show_unit(const imk_evaluate_shown *v, imk_result *result)
         imk_table_row(table, "Log at rest\t%s", v->rest_path);
 }
 
-/* A finding for each limit that is not surely met. @return how many limits there are */
-static size_t show_limits(const char *name, const imk_evaluate_sheet *sheet, bool *met,
-                          imk_result *result)
+/* A finding for each limit that is not surely met. */
+static void show_limits(const char *name, const imk_evaluate_sheet *sheet, imk_result *result)
 {
-    size_t assessed = 0;
     for (const imk_evaluate_row *row = sheet->row; row < sheet->row + sheet->count; row++) {
         char line[300];
-        assessed += row->verdict != IMK_EVALUATE_NONE;
         if (row->verdict <= IMK_EVALUATE_MET)
             continue;
-        *met = false;
         snprintf(line, sizeof line, "%s, %s: %s (limit %s).", name, row->title,
                  imk_evaluate_verdict_text(row->verdict), row->limit);
         imk_result_finding(result, row->verdict == IMK_EVALUATE_DOUBTFUL ? 1 : 2, line);
     }
-    return assessed;
 }
 
-static void show_verdict(const imk_evaluate_shown *v, imk_result *result)
+static void show_limits_of_all(const imk_evaluate_shown *v, imk_result *result)
 {
-    size_t assessed = 0;
-    bool met = true;
-    char text[120];
-    if (v->limit_count == 0)
-        return;
-    imk_result_heading(result, "Verdict");
     for (size_t k = 0; k < v->channel_count; k++)
-        assessed += show_limits(v->channel[k].name, &v->channel[k].sheet, &met, result);
+        show_limits(v->channel[k].name, &v->channel[k].sheet, result);
     for (size_t k = 0; k < v->rest_count; k++)
-        assessed += show_limits(v->rest[k].name, &v->rest[k].sheet, &met, result);
-    snprintf(text, sizeof text, "All %zu limits are met, with their whole intervals.", assessed);
-    if (met)
-        imk_result_finding(result, 0, text);
+        show_limits(v->rest[k].name, &v->rest[k].sheet, result);
 }
 
 static void show_definitions(const imk_evaluate_shown *v, imk_result *result)
@@ -362,7 +365,7 @@ void imk_show_evaluate(const imk_evaluate_shown *v, imk_result *result)
                      v->serial ? ", serial number " : "", v->serial ? v->serial : "");
     imk_result_for(result, IMK_FOR_PAGE);
     show_unit(v, result);
-    show_verdict(v, result);
+    show_limits_of_all(v, result);
     for (size_t k = 0; k < v->channel_count; k++)
         show_channel(v, &v->channel[k], result);
     imk_result_for(result, IMK_FOR_PAGE);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The display of what is in a log: sensors, times, columns, motion. */
-#include "show_internal.h"
+#include "info_judgement_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -70,36 +70,10 @@ static void stream_data(const imk_log_stream *s, imk_result *result)
 
 /* ---- times ----------------------------------------------------------------------------------- */
 
-/* "12 gaps", "one gap" of a kind; nothing of none. */
-static void add_fault(imki_text *text, size_t count, const char *one, const char *several)
-{
-    if (count > 0)
-        imki_text_add(text, "%s%zu %s", text->size > 0 ? ", " : "", count,
-                      count == 1 ? one : several);
-}
-
 static void show_faults(const imk_info_log *info, imk_table *table)
 {
     imki_text faults = {0};
-    add_fault(&faults, info->gaps, "gap", "gaps");
-    if (info->gaps > 0)
-        imki_text_add(&faults, " with %zu missing row%s", info->missing,
-                      info->missing == 1 ? "" : "s");
-    add_fault(&faults, info->repeats, "repeated stamp", "repeated stamps");
-    add_fault(&faults, info->reversals, "step back of the time", "steps back of the time");
-    add_fault(&faults, info->not_finite, "row with a value that is no finite number",
-              "rows with a value that is no finite number");
-    add_fault(&faults, info->damaged, "row, message or block that cannot be read",
-              "rows, messages or blocks that cannot be read");
-    add_fault(&faults, info->other_frames, "message of another frame than the first",
-              "messages of another frame than the first");
-    if (info->other_frames > 0)
-        imki_text_add(&faults, " (%s): two sensors on one topic?", info->frames);
-    if (info->stopped)
-        imki_text_add(&faults, "%sreading ended with an error", faults.size > 0 ? "; " : "");
-    if (info->cut_short)
-        imki_text_add(&faults, "%sthe file ends in the middle of a row, message or block",
-                      faults.size > 0 ? "; " : "");
+    imki_info_faults(info, &faults);
     imk_table_row(table, "faults\t%s%s", faults.size > 0 ? faults.bytes : "none",
                   info->whole ? "" : ", in the rows read");
     free(faults.bytes);
@@ -250,9 +224,12 @@ static void show_channels(const imk_info_log *info, imk_result *result)
             imk_table_add(table, "texts");
             continue;
         }
-        imk_table_add(table, "%.5g\t%.3g\t%.5g\t%.5g", in_unit(c, c->mean),
-                      c->scatter / c->column.unit.scale, in_unit(c, c->lowest),
-                      in_unit(c, c->highest));
+        imk_table_add(table, "%.5g", in_unit(c, c->mean));
+        if (isfinite(c->scatter))
+            imk_table_add(table, "%.3g", c->scatter / c->column.unit.scale);
+        else
+            imk_table_add(table, "-");
+        imk_table_add(table, "%.5g\t%.5g", in_unit(c, c->lowest), in_unit(c, c->highest));
         if (c->step > 0)
             imk_table_add(table, "%.3g", c->step / c->column.unit.scale);
         else
@@ -288,50 +265,6 @@ static void channel_data(const imk_info_channel *c, imk_result *result)
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */
-
-/* Gyros or accelerometers in counts, whose unit nobody stated. */
-static bool is_counted(const imk_info_log *info)
-{
-    const imk_dimension count = imk_unit_of("count").dimension;
-    bool any = false;
-    for (size_t i = 0; i < info->channel_count; i++) {
-        const imk_log_column *c = &info->channel[i].column;
-        any = any || ((c->quantity == IMK_QUANTITY_ANGULAR_RATE ||
-                       c->quantity == IMK_QUANTITY_SPECIFIC_FORCE) &&
-                      imk_dimension_equal(c->unit.dimension, count));
-    }
-    return any;
-}
-
-/* A gyro or an accelerometer whose values are all the same. */
-static const imk_info_channel *find_constant(const imk_info_log *info)
-{
-    for (size_t i = 0; i < info->channel_count; i++) {
-        const imk_info_channel *c = &info->channel[i];
-        if ((c->column.quantity == IMK_QUANTITY_ANGULAR_RATE ||
-             c->column.quantity == IMK_QUANTITY_SPECIFIC_FORCE) &&
-            c->lowest == c->highest)
-            return c;
-    }
-    return NULL;
-}
-
-/* Each is suggested where it will run: multiposition needs twelve holds, and the places of a long
- * log may show one twice. */
-imk_info_next imk_info_log_next(const imk_info_log *info)
-{
-    const bool times =
-        info->duration > 0 && 100 * info->reversals < info->rows_read && !info->times_refused;
-    if (!info->stated || is_counted(info) || !times || find_constant(info))
-        return IMK_INFO_NEXT_NONE;
-    if (info->motion == IMK_INFO_REST)
-        return IMK_INFO_NEXT_IDENTIFY;
-    if (info->motion != IMK_INFO_POSES || !info->whole)
-        return IMK_INFO_NEXT_NONE;
-    return info->holds >= 12                          ? IMK_INFO_NEXT_MULTIPOSITION
-           : info->holds == 6 && info->attitudes == 6 ? IMK_INFO_NEXT_SIXPOSITION
-                                                      : IMK_INFO_NEXT_NONE;
-}
 
 /* What the numbers of an accelerometer without a unit say. */
 static void show_unstated(const imk_info_log *info, imk_result *result)
@@ -391,7 +324,7 @@ static void show_rest(const imk_info_log *info, const char *where, imk_result *r
 
 static void show_motion(const imk_info_log *info, imk_result *result)
 {
-    const imk_info_channel *constant = find_constant(info);
+    const imk_info_channel *constant = imki_info_constant(info);
     if (constant)
         imk_result_line(result, "All values of %s are the same.", constant->column.name);
     if (!info->stated) {
@@ -423,7 +356,7 @@ static void show_motion(const imk_info_log *info, imk_result *result)
                                 "accelerometers, or less than three seconds without holes.");
         break;
     }
-    if (is_counted(info))
+    if (imki_info_counted(info))
         imk_result_line(result,
                         "The readings are counts: state --device PART with --gyro-range and "
                         "--accel-range, or --gyro-scale and --accel-scale.");
@@ -437,6 +370,7 @@ static void show_data(const imk_info_log *info, const imk_info_file *file, const
     imk_result_text(result, "format", file->format);
     imk_result_end(result);
     imk_result_object(result, "result");
+    imki_judge_info(info, file, result);
     imk_result_array(result, "topics");
     for (size_t i = 0; i < file->stream_count; i++)
         stream_data(&file->stream[i], result);

@@ -48,9 +48,30 @@ void imki_begin_curve(imk_figure_builder *figure, const char *label, imk_curve_s
 /* A line from a composed text; nothing when the text is empty. The text is freed. */
 void imki_show_text(imki_text *text, imk_result *result);
 
+/* Why a result is judged as it is: three reasons at most are told, the others counted. A structure
+ * of zeros with a result is empty. */
+typedef struct imki_reasons {
+    imk_result *result;
+    const char *text;
+    size_t told, left;
+} imki_reasons;
+/* judgement.c */
+void imki_reason(imki_reasons *reasons, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/* What the warnings say, without their advice. */
+void imki_reasons_of_warnings(imki_reasons *reasons, const imk_findings *findings);
+/* The same of a message, behind the name it begins with. */
+void imki_reason_of_message(imki_reasons *reasons, const char *text);
+/* "Usable with care for a first look: reason; reason." @param use  " for a first look", or "" */
+const char *imki_judgement(const imki_reasons *reasons, imk_usability usability, const char *use);
+/* The same as the judgement of the result, in the object of its data that is open. */
+void imki_judge(const imki_reasons *reasons, imk_usability usability, const char *use);
+
 bool imki_warned(const imk_findings *findings);
 /* The warnings, as findings of the page. */
 void imki_show_warnings(const imk_findings *findings, imk_result *result);
+/* evaluate_judgement.c: in the object of the data that is open. */
+void imki_judge_evaluation(const imk_evaluate_shown *shown, imk_result *result);
 /* evaluate_figure_show.c: deviations and hysteresis of a channel. */
 void imki_show_evaluate_panels(const imk_evaluate_channel *channel, imk_figure_builder *figure);
 

@@ -154,6 +154,63 @@ static void explain(const imk_spectrum_log *s, size_t lines, imk_result *result)
                     lines == 0 ? " No lines found." : "");
 }
 
+/* ---- judgement ------------------------------------------------------------------------------- */
+
+/* The lines of all channels; the strongest is the one that stands highest above its floor. */
+static void judge_lines(const imk_spectrum_log *s, imki_reasons *reasons)
+{
+    const imk_spectrum_line *strongest = NULL;
+    size_t count = 0, channel = 0;
+    for (size_t c = 0; c < s->record.count; c++)
+        for (size_t i = 0; i < s->channel[c].line_count; i++, count++) {
+            const imk_spectrum_line *l = &s->channel[c].line[i];
+            if (strongest && l->density / l->level <= strongest->density / strongest->level)
+                continue;
+            strongest = l;
+            channel = c;
+        }
+    if (!strongest)
+        imki_reason(reasons, "no line stands out");
+    else
+        imki_reason(reasons, "%zu line%s stand%s out, %sat %.4g Hz in %s", count,
+                    count == 1 ? "" : "s", count == 1 ? "s" : "",
+                    count == 1 ? "" : "the strongest ", strongest->frequency,
+                    imk_even_record_column(&s->record, channel)->name);
+}
+
+/* How well the root densities are known. */
+static void judge(const imk_spectrum_log *s, imk_result *result)
+{
+    imki_reasons reasons = {.result = result};
+    double best = HUGE_VAL, worst = 0, low = HUGE_VAL, high = 0;
+    char use[80];
+    for (size_t c = 0; c < s->record.count; c++)
+        for (size_t b = 0; b < s->channel[c].coarse_count; b++) {
+            const imk_spectrum_band *band = &s->channel[c].coarse[b];
+            const double above = sqrt(band->upper / band->density) - 1;
+            best = fmin(best, above);
+            worst = fmax(worst, above);
+            low = fmin(low, band->frequency);
+            high = fmax(high, band->frequency);
+        }
+    const bool none = !(best <= 1); /* nothing is known to a factor of two */
+    imki_reasons_of_warnings(&reasons, &s->findings);
+    const imk_usability usability = none                                ? IMK_NOT_USABLE
+                                    : reasons.told > 0 || !(worst <= 1) ? IMK_USABLE_WITH_CARE
+                                                                        : IMK_USABLE;
+    snprintf(use, sizeof use, " from %.4g Hz to %.4g Hz", low, high);
+    if (none)
+        imki_reason(&reasons,
+                    "no density is known to a factor of two, as the record has only %zu "
+                    "rows",
+                    s->record.rows);
+    else
+        imki_reason(&reasons, "root densities are known to %.2g %%, at worst %.2g %%", 100 * best,
+                    100 * worst);
+    judge_lines(s, &reasons);
+    imki_judge(&reasons, usability, none ? "" : use);
+}
+
 /* ---- data ------------------------------------------------------------------------------------ */
 
 static void line_data(const imk_spectrum_line *l, imk_unit unit, imk_result *result)
@@ -240,6 +297,7 @@ static void show_data(const imk_spectrum_log *s, const char *name, imk_result *r
     imk_result_number(result, "false_alarm", s->settings.false_alarm);
     imk_result_end(result);
     imk_result_object(result, "result");
+    judge(s, result);
     imk_result_array(result, "channels");
     for (size_t c = 0; c < s->record.count; c++)
         channel_data(s, c, result);

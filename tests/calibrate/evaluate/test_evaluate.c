@@ -176,6 +176,29 @@ static void test_quantizer(void **state)
     CHECK_CLOSE(result.smallest_input, 0.1, 1e-9);
 }
 
+/* Where each step gives its change, the table does not tell the resolution, but a bound; where the
+ * largest gives nothing, it is coarser than all. */
+static void test_steps_too_large(void **state)
+{
+    (void)state;
+    double x[24], y[24];
+    for (int i = 0; i < 24; i++) {
+        x[i] = 100.0 * (i % 4);
+        y[i] = x[i] + 0.01 * (i / 4 % 2);
+    }
+    evaluate_well(&(imk_evaluation_table){.count = 24, .reference = x, .reading = y});
+    assert_true(isnan(result.resolution.value) && isnan(result.threshold.value));
+    CHECK_CLOSE(result.resolution.lower, 0.0, 0.0);
+    CHECK_CLOSE(result.resolution.upper, 100.0, 1e-9);
+    CHECK_CLOSE(result.threshold.upper, 100.0, 1e-9);
+    CHECK_CLOSE(result.smallest_step, 100.0, 1e-9);
+    /* The step back from 300 to 0 is the largest; it gives a third. */
+    for (int i = 0; i < 24; i++)
+        y[i] = x[i] < 300.0 ? x[i] : 100.0 * (i / 4 % 2);
+    evaluate_well(&(imk_evaluation_table){.count = 24, .reference = x, .reading = y});
+    assert_true(isinf(result.resolution.value));
+}
+
 /* ---- noise ----------------------------------------------------------------------------------- */
 
 /* Two readings of each of three levels, all reached from below: differences 0.2, 0.4, 0.4 give
@@ -329,6 +352,7 @@ int main(void)
         cmocka_unit_test(test_figures_without_noise),
         cmocka_unit_test(test_asymmetry),
         cmocka_unit_test(test_quantizer),
+        cmocka_unit_test(test_steps_too_large),
         cmocka_unit_test(test_replicates),
         cmocka_unit_test(test_no_replicates),
         cmocka_unit_test(test_runs),

@@ -83,7 +83,7 @@ static void signs_of_six_faces(void **state)
     (void)state;
     write_faces();
     spoil("sound.csv", "faces.csv", "");
-    check_verdict(SIX " --strict", 0, "Good: ");
+    check_verdict(SIX " --strict", 0, "Usable: ");
     check_contains(out, "the opposite sign of gyro_y (no turn tells it)", "sound.csv");
     spoil("sound.csv", "faces.csv", "$5=-$5");
     check_verdict(SIX, 0, "Usable with care (1 warning)");
@@ -104,7 +104,7 @@ static void coarse_steps(void **state)
     (void)state;
     write_poses();
     spoil("sound.csv", "poses.csv", "for(i=2;i<5;i++)$i=0.1*sprintf(\"%d\",$i*10+1000.5)-100");
-    check_verdict(POSES " --strict", 0, "Good: ");
+    check_verdict(POSES " --strict", 0, "Usable: ");
     spoil("sound.csv", "poses.csv", "for(i=2;i<5;i++)$i=sprintf(\"%d\",$i+1000.5)-1000");
     check_verdict(POSES, 0, "gyro bias to 0.1");
     check_contains(err, "the readings of gyro_x, gyro_y, gyro_z are rounded to steps", "rounded");
@@ -123,10 +123,10 @@ static void lost_rests(void **state)
     (void)state;
     write_poses();
     spoil("sound.csv", "poses.csv", "");
-    check_verdict(POSES " --strict", 0, "Good: ");
+    check_verdict(POSES " --strict", 0, "Usable: ");
     assert_null(strstr(out, "between turns"));
     spoil("sound.csv", "poses.csv", "if($1>77.8&&$1<82.2)$5+=(NR*7919%100-50)/50");
-    check_verdict(POSES, 0, "Good: ");
+    check_verdict(POSES, 0, "Usable: ");
     check_contains(out, "1 stretch between turns, of 24, looks like a rest, but cannot be used",
                    "noise");
     check_contains(out, "the noise of accel_x is ", "noise");
@@ -147,7 +147,7 @@ static void scales_of_few_sensors(void **state)
     (void)state;
     write_poses();
     spoil("sound.csv", "poses.csv", "$4*=1.06");
-    check_verdict(POSES " --strict", 0, "Good: ");
+    check_verdict(POSES " --strict", 0, "Usable: ");
     check_contains(out, "gyro_z reads 1.06 times the true rate: few such sensors err", "1.06");
     spoil("sound.csv", "poses.csv", "$4*=1.1");
     check_verdict(POSES, 0, "Usable with care (1 warning)");
@@ -173,7 +173,7 @@ static void labels_that_contradict(void **state)
     (void)state;
     write_faces();
     label_faces("z_down y_down z_up y_up x_up x_down", "");
-    check_verdict(SIX " --strict", 0, "Good: ");
+    check_verdict(SIX " --strict", 0, "Usable: ");
     label_faces("z_up y_down z_down y_up x_up x_down", "");
     assert_int_equal(run(SIX), 1);
     check_contains(err,

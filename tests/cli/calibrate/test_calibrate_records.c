@@ -18,14 +18,14 @@ static void check_doubt(const char *line, const char *message)
 {
     run(line);
     check_contains(err, message, line);
-    assert_null(strstr(out, "Good:"));
+    assert_null(strstr(out, "Usable:"));
 }
 
 static void check_sound(const char *line)
 {
     if (run(line) != 0)
         fail_msg("%s\n%s%s", line, out, err);
-    check_contains(out, "Good:", line);
+    check_contains(out, "Usable:", line);
 }
 
 /* A table that turns the unit in three attitudes, and rests in six. */

@@ -17,7 +17,7 @@ static void add_panel(drawing *d, const imk_panel *panel)
 {
     if (d->panels++ == 0)
         d->figure =
-            imk_result_figure(d->result, "calibration", 1,
+            imk_result_figure(d->result, "calibration", 2,
                               "Residuals of each observation, and for each log the scatter within "
                               "a short window divided by the threshold from the noise: the unit is "
                               "stationary below the dashed line. Tinted: the intervals found.");

@@ -227,8 +227,7 @@ static void show_data(const imk_calibrate_log *b, const imk_verdict *v, const ch
     static const char *const levels[] = {"good", "note", "warning", "useless"};
     show_inputs(b, result);
     imk_result_object(result, "result");
-    imk_result_text(result, "verdict", verdict);
-    imk_result_text(result, "level", levels[imk_verdict_level(v)]);
+    imk_result_judge(result, imk_verdict_usability(v), "%s", verdict);
     imk_result_array(result, "sentences");
     for (const imk_message *s = v->message; s < v->message + v->count; s++) {
         imk_result_object(result, NULL);
@@ -260,15 +259,11 @@ static void show_title(const imk_calibrate_log *b, imk_result *result)
     free(logs.bytes);
 }
 
-static void show_verdict(const imk_calibrate_log *b, const imk_verdict *v, const char *verdict,
-                         imk_result *result)
+static void show_verdict(const imk_verdict *v, imk_result *result)
 {
     static const int boxes[] = {0, 1, 2, 2};
-    imk_result_heading(result, "Verdict");
-    imk_result_finding(result, boxes[imk_verdict_level(v)], verdict);
     for (const imk_message *s = v->message; s < v->message + v->count; s++)
         imk_result_finding(result, boxes[s->level], s->text);
-    imk_result_heading(result, b->runs ? "From run to run" : "Parameters");
 }
 
 static void show_temperature(const imk_calibrate_log *b, bool brief, imk_result *result)
@@ -298,18 +293,20 @@ static void show_holds(const imk_calibrate_record *log, imk_result *result)
                         f->too_short, f->saturated, f->not_finite);
 }
 
+static bool has_observations(const imk_calibrate_log *b)
+{
+    return b->result && !b->ferraris && b->calibration->observation_count > 0;
+}
+
 /* The rest of the page. */
 static void show_evidence(const imk_calibrate_log *b, imk_result *result)
 {
     imk_result_for(result, IMK_FOR_PAGE);
-    const bool observed = b->result && !b->ferraris && b->calibration->observation_count > 0;
-    if (observed) {
-        imki_calibrate_figure(b, result);
+    if (has_observations(b))
         imk_result_heading(result, "Observations");
-    }
     for (const imk_calibrate_record *log = b->record; log < b->record + b->count; log++)
         show_holds(log, result);
-    if (observed)
+    if (has_observations(b))
         imki_pose_table(b, result);
 }
 
@@ -322,7 +319,10 @@ void imk_show_calibrate_log(const imk_calibrate_log *b, const imk_verdict *v, bo
     show_data(b, v, verdict, result);
     show_title(b, result);
     imk_result_for(result, IMK_FOR_PAGE);
-    show_verdict(b, v, verdict, result);
+    show_verdict(v, result);
+    if (has_observations(b))
+        imki_calibrate_figure(b, result);
+    imk_result_heading(result, b->runs ? "From run to run" : "Parameters");
     imk_result_for(result, IMK_FOR_BOTH);
     for (int sensor = 1; sensor >= 0; sensor--)
         if (b->runs)
@@ -354,6 +354,5 @@ void imk_show_calibrate_log(const imk_calibrate_log *b, const imk_verdict *v, bo
     for (const imk_message *s = v->message; s < v->message + v->count; s++)
         if (s->level == IMK_FINDING_NOTE)
             imk_result_line(result, "%s.", s->text);
-    imk_result_line(result, "%s", verdict);
     imk_result_for(result, IMK_FOR_BOTH);
 }

@@ -42,6 +42,10 @@ void imki_untestable(const imk_calibrate_log *b, imk_verdict *verdict);
 bool imki_no_sigma(const imk_calibrate_log *b, int group);
 /* The text that names a row; NULL: it has none. */
 const char *imki_label_of(const imk_test_record *record, size_t row);
+/* "accelerometer bias to 0.05 mg, scale factor to 65 ppm; gyro bias to 0.6 deg/h": the worst axis
+ * of each term that was estimated. */
+void imki_precision(size_t count, const imk_model_parameter *parameter, const double *sigma_of,
+                    imki_text *list);
 /* The verdict in one message. */
 void imki_calibrate_summary(const imk_calibrate_log *b, const imk_verdict *verdict, char *text,
                             size_t size);

@@ -23,17 +23,18 @@ imk_finding_level imk_verdict_level(const imk_verdict *v)
 }
 
 /* Worst 1 sigma of a term of a sensor; 0 when it was not estimated. */
-static double worst(const imk_calibrate_log *b, int sensor, int term)
+static double worst(size_t count, const imk_model_parameter *parameter, const double *sigma,
+                    int sensor, int term)
 {
     double most = 0;
-    for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
-        if (b->result->parameter[p].sensor == sensor && b->result->parameter[p].term == term)
-            most = fmax(most, b->result->sigma[p]);
+    for (size_t p = 0; p < count; p++)
+        if (parameter[p].sensor == sensor && parameter[p].term == term)
+            most = fmax(most, sigma[p]);
     return most;
 }
 
-/* "accelerometer bias to 0.05 mg, scale factor to 65 ppm, misalignment to 0.02 mrad" */
-static void describe_precision(const imk_calibrate_log *b, imki_text *list)
+void imki_precision(size_t count, const imk_model_parameter *parameter, const double *sigma_of,
+                    imki_text *list)
 {
     static const int terms[4] = {IMK_MODEL_BIAS, IMK_MODEL_SCALE_FACTOR, IMK_MODEL_MISALIGNMENT,
                                  IMK_MODEL_CROSS_AXIS};
@@ -43,7 +44,7 @@ static void describe_precision(const imk_calibrate_log *b, imki_text *list)
         const int sensor = order[k];
         bool first = true;
         for (int t = 0; t < 4; t++) {
-            const double sigma = worst(b, sensor, terms[t]);
+            const double sigma = worst(count, parameter, sigma_of, sensor, terms[t]);
             if (!(sigma > 0))
                 continue;
             const imk_model_parameter p = {(uint8_t)sensor, (uint8_t)terms[t], 0, 1};
@@ -65,7 +66,9 @@ void imki_calibrate_summary(const imk_calibrate_log *b, const imk_verdict *v, ch
                             size_t size)
 {
     imki_text precision = {0};
-    describe_precision(b, &precision);
+    if (b->result)
+        imki_precision(b->result->parameter_count, b->result->parameter, b->result->sigma,
+                       &precision);
     const char *known = precision.bytes, *behind = known ? ", 1 sigma of the worst axis" : "";
     const imk_finding_level level = imk_verdict_level(v);
     size_t warnings = 0, bad = 0;
@@ -79,7 +82,7 @@ void imki_calibrate_summary(const imk_calibrate_log *b, const imk_verdict *v, ch
         snprintf(text, size, "Usable with care (%zu warning%s): %s%s.", warnings,
                  warnings == 1 ? "" : "s", known ? known : "see below", behind);
     else
-        snprintf(text, size, "Good: %s%s.", known ? known : "no test found a fault in these logs",
+        snprintf(text, size, "Usable: %s%s.", known ? known : "no test found a fault in these logs",
                  behind);
     free(precision.bytes);
 }

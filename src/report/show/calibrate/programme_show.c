@@ -4,6 +4,7 @@
 #include "calibrate_show_internal.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 static const double degree = 0.017453292519943295;
 
@@ -110,6 +111,36 @@ static void show_requirements(const imk_calibrate_plan *p, imk_result *result)
     imk_result_gap(result);
 }
 
+/* A programme is judged by what is wanted of it; if nothing is, by what it determines. */
+static void judge(const imk_calibrate_plan *p, imk_result *result)
+{
+    const imk_plan_result *r = &p->result;
+    const size_t wanted = p->settings.requirement_count;
+    imki_reasons reasons = {.result = result};
+    imki_text precision = {0};
+    char length[60];
+    size_t unknown = 0;
+    imk_readable_duration(p->duration, length, sizeof length);
+    for (size_t k = 0; k < r->parameter_count; k++)
+        unknown += !isfinite(r->sigma[k]);
+    imki_precision(r->parameter_count, r->parameter, r->sigma, &precision);
+    const imk_usability usability = r->reached < wanted ? IMK_NOT_USABLE
+                                    : unknown > 0       ? IMK_USABLE_WITH_CARE
+                                                        : IMK_USABLE;
+    if (wanted > 0)
+        imki_reason(&reasons, "%zu steps of %s in all reach %zu of the %zu accuracies wanted",
+                    r->step_count, length, r->reached, wanted);
+    else
+        imki_reason(&reasons, "%zu steps of %s in all", r->step_count, length);
+    if (unknown > 0)
+        imki_reason(&reasons, "%zu of %zu parameters would not be determined", unknown,
+                    r->parameter_count);
+    if (precision.size > 0)
+        imki_reason(&reasons, "%s, 1 sigma of the worst axis", precision.bytes);
+    imki_judge(&reasons, usability, r->reached < wanted ? " for what is wanted" : "");
+    free(precision.bytes);
+}
+
 static void show_data(const imk_calibrate_plan *p, const char *model, imk_result *result)
 {
     static const char *const actions[] = {"hold", "rate", "force", "soak"};
@@ -118,6 +149,7 @@ static void show_data(const imk_calibrate_plan *p, const char *model, imk_result
     imk_result_text(result, "procedure", imk_procedure_name(p->settings.procedure));
     imk_result_end(result);
     imk_result_object(result, "result");
+    judge(p, result);
     imk_result_array(result, "steps");
     for (const imk_plan_step *s = p->step; s < p->step + p->result.step_count; s++) {
         imk_result_object(result, NULL);
@@ -151,12 +183,9 @@ static void show_data(const imk_calibrate_plan *p, const char *model, imk_result
 
 void imk_show_calibrate_plan(const imk_calibrate_plan *p, const char *model, imk_result *result)
 {
-    char length[60];
     show_data(p, model, result);
     show_steps(p, result);
     show_requirements(p, result);
-    imk_readable_duration(p->duration, length, sizeof length);
-    imk_result_line(result, "%zu steps, %s.", p->result.step_count, length);
     if (p->settings.procedure == IMK_PROCEDURE_THERMAL)
         imk_result_line(result,
                         "Each temperature is held for %g s until the unit has settled (--soak), "

@@ -49,4 +49,7 @@ void imki_show_grade_maps(const imk_graded_several *r, imk_result *result);
 void imki_show_map_data(imk_result *result);
 void imki_show_place_data(const imk_graded *one, imk_result *result);
 
+/* grade_judgement.c: in the object of the data that is open. */
+void imki_judge_grade(const imk_graded_several *r, imk_result *result);
+
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The Allan plot of each channel: measured points, the model and its terms, the range expected for
- * a record of this length, and the twin; below it the difference of the points from the model. */
+/* The Allan plot of each channel: measured points, the model and all it consists of, where it does
+ * not hold, the range expected for a record of this length, and the twin; below it the difference
+ * of the points from the model. */
 #include "identify_show_internal.h"
 
 #include "report/result_internal.h"
@@ -10,7 +11,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { MODEL_COLOR = 6, BAND_COLOR = 7, DATA_COLOR = 0, TWIN_COLOR = 4 };
+enum { MODEL_COLOR = 6, BAND_COLOR = 7, DATA_COLOR = 0, TWIN_COLOR = 4, INVALID_COLOR = 1 };
 
 /* Beyond this many standard deviations it does not matter how many. */
 static const double misfit_most = 9;
@@ -31,8 +32,24 @@ static double deviation_of(const imk_identify_log *log, size_t channel, size_t m
     return sqrt(imk_identification_allan_variance(&log->result[channel], log->record.dt, m, term));
 }
 
-/* The model, or one term of it, at ten averaging times to a decade. */
-static void show_model(const imk_identify_log *log, size_t channel, int term, double scale,
+/* What a curve is of: the model (negative), one of its terms, or a part behind these. */
+typedef struct component {
+    int term; /* IMK_NOISE_TERMS and more: a part of this kind */
+    int index;
+} component;
+
+static double variance_of(const imk_identify_log *log, size_t channel, component c, size_t m)
+{
+    const imk_identification *r = &log->result[channel];
+    const double dt = log->record.dt;
+    return c.term < IMK_NOISE_TERMS
+               ? imk_identification_allan_variance(r, dt, m, c.term)
+               : imk_identification_part_allan_variance(
+                     r, (imk_identified_kind)(c.term - IMK_NOISE_TERMS), c.index, dt, m);
+}
+
+/* The model, or a component of it, at ten averaging times to a decade. */
+static void show_model(const imk_identify_log *log, size_t channel, component c, double scale,
                        imk_figure_builder *figure)
 {
     const size_t rows = log->record.rows;
@@ -43,13 +60,104 @@ static void show_model(const imk_identify_log *log, size_t channel, int term, do
     imk_allan_factors_for(IMK_ALLAN_OVERLAPPING, IMK_ALLAN_DECADE, rows, factor);
     for (size_t k = 0; k < count; k++)
         imk_figure_point(figure, log->record.dt * (double)factor[k],
-                         deviation_of(log, channel, factor[k], term) / scale);
+                         sqrt(variance_of(log, channel, c, factor[k])) / scale);
+}
+
+/* "line of 12.5 Hz" */
+static void name_part(const imk_identification *r, imk_identified_kind kind, int index, size_t size,
+                      char *text)
+{
+    switch (kind) {
+    case IMK_IDENTIFIED_GAUSS_MARKOV:
+        snprintf(text, size, "Gauss-Markov, %.3g s", r->gauss_markov[index].correlation_time.value);
+        break;
+    case IMK_IDENTIFIED_SINUSOID:
+        snprintf(text, size, "line of %.4g Hz", r->sinusoid[index].frequency);
+        break;
+    case IMK_IDENTIFIED_RESONANCE:
+        snprintf(text, size, "resonance at %.4g Hz", r->resonance[index].frequency);
+        break;
+    default:
+        snprintf(text, size, "rounding");
+    }
+}
+
+static void show_components(const imk_identify_log *log, size_t channel, double scale,
+                            imk_figure_builder *figure)
+{
+    static const int colors[IMK_NOISE_TERMS] = {3, 1, 2, 5, 4};
+    static const int part_colors[IMK_IDENTIFIED_KINDS] = {0, 7, 4, 6};
+    const imk_identification *r = &log->result[channel];
+    char name[80];
+    for (int term = 0; term < IMK_NOISE_TERMS; term++) {
+        const imk_term_display display = imk_identified_term(
+            imk_even_record_column(&log->record, channel), r, (imk_noise_term)term);
+        const bool filtered = term == IMK_NOISE_WHITE && r->filter.bandwidth > 0;
+        if (!r->term[term].present)
+            continue;
+        snprintf(name, sizeof name, "%.40s", display.name);
+        if (filtered)
+            snprintf(name, sizeof name, "%.30s, filter of %.3g Hz", display.name,
+                     r->filter.bandwidth);
+        imki_begin_curve(figure, name, IMK_CURVE_DASHES, colors[term]);
+        show_model(log, channel, (component){term, 0}, scale, figure);
+    }
+    for (int kind = 0; kind < IMK_IDENTIFIED_KINDS; kind++)
+        for (int i = 0; i < imk_identification_count(r, (imk_identified_kind)kind); i++) {
+            name_part(r, (imk_identified_kind)kind, i, sizeof name, name);
+            imki_begin_curve(figure, name, IMK_CURVE_DASHES, part_colors[kind]);
+            show_model(log, channel, (component){IMK_NOISE_TERMS + kind, i}, scale, figure);
+        }
+}
+
+/* Averaging times at which the model does not hold, below the range of validity or above it. */
+typedef struct invalid_range {
+    double from, to; /* [s]; equal: none; infinite: to the frame */
+} invalid_range;
+
+static invalid_range invalid_range_of(const imk_identify_log *log, size_t channel, bool above)
+{
+    const imk_identification *r = &log->result[channel];
+    const bool nowhere = !isfinite(r->valid_from);
+    const invalid_range none = {0, 0};
+    if (log->origin != IMK_IDENTIFY_RECORD || (nowhere && above))
+        return none;
+    if (nowhere)
+        return (invalid_range){-HUGE_VAL, HUGE_VAL};
+    if (above)
+        return r->valid_to < 0.99 * r->longest ? (invalid_range){r->valid_to, HUGE_VAL} : none;
+    return r->valid_from > 1.5 * log->record.dt ? (invalid_range){-HUGE_VAL, r->valid_from} : none;
+}
+
+static bool is_invalid(const imk_identify_log *log)
+{
+    bool any = false;
+    for (size_t c = 0; c < log->record.count; c++)
+        for (int above = 0; above < 2; above++) {
+            const invalid_range range = invalid_range_of(log, c, above > 0);
+            any = any || range.to > range.from;
+        }
+    return any;
+}
+
+static void show_invalid(const imk_identify_log *log, size_t channel, const char *label,
+                         imk_figure_builder *figure)
+{
+    for (int above = 0; above < 2; above++) {
+        const invalid_range range = invalid_range_of(log, channel, above > 0);
+        if (range.to > range.from)
+            imk_figure_region(figure, &(imk_region){.label = label,
+                                                    .color = INVALID_COLOR,
+                                                    .x_low = range.from,
+                                                    .x_high = range.to,
+                                                    .y_low = -HUGE_VAL,
+                                                    .y_high = HUGE_VAL});
+    }
 }
 
 static void show_deviations(const imk_identify_shown *shown, size_t channel,
                             imk_figure_builder *figure)
 {
-    static const int colors[IMK_NOISE_TERMS] = {3, 1, 2, 5, 4};
     const imk_identify_log *log = shown->log;
     const imk_log_column *column = imk_even_record_column(&log->record, channel);
     const imk_allan_curve *curve = &log->curve[channel];
@@ -63,7 +171,8 @@ static void show_deviations(const imk_identify_shown *shown, size_t channel,
                                           .y_label = label,
                                           .x_logarithmic = true,
                                           .y_logarithmic = true,
-                                          .allan_deviation = true});
+                                          .allan_deviation = true,
+                                          .key = is_invalid(log) ? IMK_KEY_LOWER : IMK_KEY_UPPER});
     imki_begin_curve(figure, "expected spread", IMK_CURVE_BAND, BAND_COLOR);
     for (size_t k = 0; k < curve->count; k++) {
         /* Under the model the measured variance is the model's times chi^2/edf. */
@@ -73,15 +182,9 @@ static void show_deviations(const imk_identify_shown *shown, size_t channel,
                        model * sqrt(imk_chi_square_quantile(tail, edf) / edf),
                        model * sqrt(imk_chi_square_quantile(1 - tail, edf) / edf));
     }
-    for (int term = 0; term < IMK_NOISE_TERMS; term++)
-        if (log->result[channel].term[term].present) {
-            const imk_term_display display =
-                imk_identified_term(column, &log->result[channel], (imk_noise_term)term);
-            imki_begin_curve(figure, display.name, IMK_CURVE_DASHES, colors[term]);
-            show_model(log, channel, term, unit.scale, figure);
-        }
+    show_components(log, channel, unit.scale, figure);
     imki_begin_curve(figure, "model", IMK_CURVE_LINE, MODEL_COLOR);
-    show_model(log, channel, -1, unit.scale, figure);
+    show_model(log, channel, (component){-1, 0}, unit.scale, figure);
     if (twin && twin->count == curve->count)
         imk_figure_curve(figure,
                          &(imk_curve){"twin", IMK_CURVE_POINTS, TWIN_COLOR, twin->count, curve->tau,
@@ -115,18 +218,37 @@ static void show_misfit(const imk_identify_log *log, size_t channel, imk_figure_
         imk_figure_point(figure, curve->tau[k],
                          misfit_of(pow(curve->deviation[k] / model, 2), curve->point[k].edf));
     }
+    show_invalid(log, channel, "", figure);
 }
 
-void imki_identify_figure(const imk_identify_shown *shown, const char *caption, imk_result *result)
+/* What the figure draws. */
+static const char *caption_of(const imk_identify_shown *shown, const char *points,
+                              imk_result *result)
+{
+    return imk_result_key(
+        result,
+        "Points: %s, with confidence intervals. Line: the model. Dashes: what it consists of. "
+        "Grey: the range of points expected from the model in a record of this length.%s%s "
+        "Below: the difference of each point from the model, converted by its probability to "
+        "standard deviations of a normal distribution; neighbouring points share most of their "
+        "data.",
+        points, is_invalid(shown->log) ? " Tinted: where the model does not hold." : "",
+        shown->twin ? " Twin: a simulation of the model." : "");
+}
+
+void imki_identify_figure(const imk_identify_shown *shown, const char *points, imk_result *result)
 {
     /* Choose the number of columns so that all rows are full. */
     const size_t count = shown->log->record.count;
     const size_t columns = count % 3 == 0 ? 3 : count % 2 == 0 ? 2 : 1;
+    const char *caption = caption_of(shown, points, result);
     imk_result_for(result, IMK_FOR_PAGE);
     imk_figure_builder *figure = imk_result_figure(result, shown->name, columns, caption);
     for (size_t first = 0; first < count; first += columns) {
-        for (size_t c = first; c < first + columns; c++)
+        for (size_t c = first; c < first + columns; c++) {
             show_deviations(shown, c, figure);
+            show_invalid(shown->log, c, "the model does not hold", figure);
+        }
         for (size_t c = first; c < first + columns; c++)
             show_misfit(shown->log, c, figure);
     }

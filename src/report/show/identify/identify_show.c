@@ -182,12 +182,15 @@ static void show_data(const imk_identify_shown *shown, imk_result *result)
     imk_result_end(result);
     imk_result_object(result, "result");
     imki_channels_data(log, result);
+    imk_result_judge(result, imk_verdict_usability(&shown->verdict), "%s",
+                     imk_identify_sentence(&shown->verdict));
     imki_verdict_data(&shown->verdict, result);
     imk_result_end(result);
 }
 
 /* ---- display --------------------------------------------------------------------------------- */
 
+/* The picture, then the tables, then the whole messages; the terminal has no picture. */
 void imk_show_identify_log(const imk_identify_shown *shown, imk_result *result)
 {
     const imk_identify_log *log = shown->log;
@@ -197,21 +200,21 @@ void imk_show_identify_log(const imk_identify_shown *shown, imk_result *result)
                      log->record.rows, log->record.count, 1 / log->record.dt,
                      imki_duration(log->duration).text);
     imk_result_for(result, IMK_FOR_PAGE);
-    imk_result_heading(result, "Verdict");
-    imki_verdict_boxes(&shown->verdict, result);
+    imki_verdict_brief_boxes(&shown->verdict, result);
+    imk_result_heading(result, "Allan deviation");
+    imki_identify_figure(shown, "the log", result);
+    imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, "Parameters");
-    imk_result_for(result, IMK_FOR_TERMINAL);
-    imk_result_line(result, "%s", imk_identify_sentence(&shown->verdict));
     imk_result_for(result, IMK_FOR_BOTH);
     imki_identify_tables(log, result);
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_line(
         result,
-        "Each value has its 1-sigma uncertainty; below it stands the interval that contains the "
-        "true value with the stated confidence, by profile likelihood. \"absent\" means that the "
-        "record does not show the term; the bound below says how large the term could still be. "
-        "Bias instability is B of IEEE 952: the flat floor of the Allan deviation is 0.664 B; the "
-        "measured minimum also contains white noise and random walk, so it is larger.");
+        "Each value has its 1-sigma uncertainty and the interval that contains the true value with "
+        "the stated confidence, by profile likelihood. \"absent\" means that the record does not "
+        "show the term; the bound says how large the term could still be. Bias instability is B of "
+        "IEEE 952: the flat floor of the Allan deviation is 0.664 B; the measured minimum also "
+        "contains white noise and random walk, so it is larger.");
     if (shown->truth) {
         imk_result_heading(result, "Comparison with the true values");
         imk_result_for(result, IMK_FOR_BOTH);
@@ -219,16 +222,9 @@ void imk_show_identify_log(const imk_identify_shown *shown, imk_result *result)
     }
     imk_result_for(result, IMK_FOR_TERMINAL);
     imki_verdict_lines(&shown->verdict, shown->verbose, result);
-    imk_result_for(result, IMK_FOR_PAGE);
-    imk_result_heading(result, "Allan deviation");
-    imki_identify_figure(
-        shown,
-        "Points: the log, with confidence intervals. Line: the model. Dashes: its terms. Grey: the "
-        "range of points expected from the model in a record of this length. Twin: a simulation of "
-        "the model. Below: the difference of each point from the model, converted by its "
-        "probability to standard deviations of a normal distribution; neighbouring points share "
-        "most of their data.",
-        result);
     imki_noise_changes_figure(shown, result);
+    imk_result_for(result, IMK_FOR_PAGE);
+    imk_result_heading(result, "What was found in the log");
+    imki_verdict_boxes(&shown->verdict, result);
     imk_result_for(result, IMK_FOR_BOTH);
 }

@@ -18,10 +18,11 @@ void imki_verdict_list(imk_verdict *verdict, imk_finding_level level, const char
 void imki_verdict_about(imk_verdict *verdict, const imk_even_record *record, uint64_t channels);
 /* The clause of the last message, a finding with this code. */
 void imki_verdict_clause(imk_verdict *verdict, const char *code);
-/* "usability" with its sentence, and the array "verdict". */
+/* The array "verdict". */
 void imki_verdict_data(const imk_verdict *verdict, imk_result *result);
-/* Coloured boxes. */
+/* Coloured boxes below the sentence: of the whole messages, or of a few words each. */
 void imki_verdict_boxes(const imk_verdict *verdict, imk_result *result);
+void imki_verdict_brief_boxes(const imk_verdict *verdict, imk_result *result);
 /* Lines of the whole messages, or of a few words each and at most 120 in all. */
 void imki_verdict_lines(const imk_verdict *verdict, bool verbose, imk_result *result);
 /* verdict_samples.c, verdict_terms.c: what holds on some channels. */
@@ -64,7 +65,8 @@ imk_term_display imki_several_term(const imk_identify_several *s, size_t channel
 /* Truth beside the estimates, and how many intervals cover it. */
 void imki_truth_table(const imk_identify_shown *shown, imk_result *result);
 
-/* The Allan deviations of each channel; on the page with the misfit below each. */
-void imki_identify_figure(const imk_identify_shown *shown, const char *caption, imk_result *result);
+/* The Allan deviations of each channel; on the page with the misfit below each.
+ * @param points  what the points are, for the caption */
+void imki_identify_figure(const imk_identify_shown *shown, const char *points, imk_result *result);
 
 #endif

@@ -1,27 +1,33 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Identified terms as tables: a row of values and a row of intervals for each term. */
+/* Identified terms as tables: a row for each term and channel. */
 #include "identify_show_internal.h"
 
 #include "imukit/identify_plan.h"
 
 #include <math.h>
 
-/* One estimate per member (NULL: none on that channel): values, and intervals below them. */
-static void estimate_rows(imk_table *table, const char *name, imk_unit unit,
-                          const imk_estimate *const *estimates, size_t members, double confidence)
+/* The channels of a kind, and the table that their terms go to. */
+typedef struct term_table {
+    imk_table *table;
+    const imk_identify_log *log;
+    const size_t *member;
+    size_t members;
+} term_table;
+
+/* One estimate per member; NULL: none on that channel. */
+static void estimate_rows(const term_table *t, const char *name, imk_unit unit,
+                          const imk_estimate *const *estimates)
 {
-    imk_table_row(table, "%s\t%s", name, unit.text);
-    for (size_t k = 0; k < members; k++) {
+    for (size_t k = 0; k < t->members; k++) {
         const imk_estimate *e = estimates[k];
-        imk_table_add(table, "%s",
-                      !e           ? ""
-                      : e->present ? imki_plus_minus(e->value, e->sigma, unit.scale).text
-                                   : "absent");
+        if (!e)
+            continue;
+        imk_table_row(t->table, "%s\t%s\t%s\t%s\t%s", name,
+                      imk_channel_axis_name(imk_even_record_column(&t->log->record, t->member[k])),
+                      e->present ? imki_plus_minus(e->value, e->sigma, unit.scale).text : "absent",
+                      imki_interval(e, unit.scale).text, unit.text);
+        name = "";
     }
-    imk_table_row(table, "\t%g %%", 100 * confidence);
-    for (size_t k = 0; k < members; k++)
-        imk_table_add(table, "%s",
-                      estimates[k] ? imki_interval(estimates[k], unit.scale).text : "");
 }
 
 /* What logs at several rates have told of a channel. */
@@ -33,9 +39,10 @@ static const imk_reading_parts *parts_of(const imk_identify_log *log, size_t cha
 }
 
 /* What was counted, and what was white noise of the integral. */
-static void reading_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
-                         size_t members)
+static void reading_rows(const term_table *t)
 {
+    const imk_identify_log *log = t->log;
+    const size_t *member = t->member, members = t->members;
     const imk_log_column *column = imk_even_record_column(&log->record, member[0]);
     const imk_estimate *rows[2][IMK_LOG_COLUMNS_MAX] = {{NULL}};
     bool any[2] = {false, false}, alone = false;
@@ -56,15 +63,15 @@ static void reading_rows(imk_table *table, const imk_identify_log *log, const si
             continue;
         for (size_t k = 0; k < members && !any[!white]; k++)
             rows[white][k] = rows[white][k] ? rows[white][k] : rows[!white][k];
-        estimate_rows(table, display[white].name, display[white].unit, rows[white], members,
-                      log->settings.confidence);
+        estimate_rows(t, display[white].name, display[white].unit, rows[white]);
     }
 }
 
 /* What logs at several rates have parted. */
-static void parted_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
-                        size_t members)
+static void parted_rows(const term_table *t)
 {
+    const imk_identify_log *log = t->log;
+    const size_t *member = t->member, members = t->members;
     const imk_log_column *column = imk_even_record_column(&log->record, member[0]);
     const imk_term_display display[2] = {imk_channel_reading_noise(column),
                                          imk_channel_angle_white(column, 1)};
@@ -77,91 +84,87 @@ static void parted_rows(imk_table *table, const imk_identify_log *log, const siz
         any = any || parts;
     }
     for (int white = 0; white < 2 && any; white++)
-        estimate_rows(table, display[white].name, display[white].unit, rows[white], members,
-                      log->settings.confidence);
+        estimate_rows(t, display[white].name, display[white].unit, rows[white]);
 }
 
-static void term_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
-                      size_t members)
+static void term_rows(const term_table *t)
 {
+    const imk_identify_log *log = t->log;
+    const size_t *member = t->member, members = t->members;
     const imk_log_column *column = imk_even_record_column(&log->record, member[0]);
     const imk_unit unit = imk_channel_term(column, IMK_NOISE_BIAS_INSTABILITY).unit;
     const imk_estimate *estimates[IMK_LOG_COLUMNS_MAX], *times[IMK_LOG_COLUMNS_MAX];
-    const double confidence = log->settings.confidence;
-    reading_rows(table, log, member, members);
-    parted_rows(table, log, member, members);
+    reading_rows(t);
+    parted_rows(t);
     for (int term = IMK_NOISE_WHITE; term < IMK_NOISE_TERMS; term++) {
         const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
         for (size_t k = 0; k < members; k++)
             estimates[k] = &log->result[member[k]].term[term];
         /* Each of several records has a ramp of its own. */
         if (log->origin != IMK_IDENTIFY_RECORDS || term != IMK_NOISE_RAMP)
-            estimate_rows(table, display.name, display.unit, estimates, members, confidence);
+            estimate_rows(t, display.name, display.unit, estimates);
     }
     for (int n = 0; n < IMK_TERMS_MAX; n++) {
-        bool any = false;
         for (size_t k = 0; k < members; k++) {
             const imk_identification *r = &log->result[member[k]];
             const bool has = n < r->gauss_markov_count;
             estimates[k] = has ? &r->gauss_markov[n].sigma : NULL;
             times[k] = has ? &r->gauss_markov[n].correlation_time : NULL;
-            any = any || has;
         }
-        if (!any)
-            break;
-        estimate_rows(table, "Gauss-Markov sigma", unit, estimates, members, confidence);
-        estimate_rows(table, "correlation time", imk_unit_of("s"), times, members, confidence);
+        estimate_rows(t, "Gauss-Markov sigma", unit, estimates);
+        estimate_rows(t, "correlation time", imk_unit_of("s"), times);
     }
 }
 
-static void from_cell(imk_table *table, double from)
+static void range_cell(imk_table *table, double from, double to)
 {
-    if (isfinite(from))
-        imk_table_add(table, "%.3g", from);
+    if (isfinite(from) && from <= to)
+        imk_table_add(table, "%.3g to %.3g", from, to);
     else
         imk_table_add(table, "nowhere");
 }
 
-/* Mean, the Allan floor beside B, and from which averaging time on the model holds. */
-static void record_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
-                        size_t members)
+/* Mean, the Allan floor beside B, and the averaging times at which the model holds. */
+static void show_records(const term_table *t, const char *kind, imk_result *result)
 {
-    const imk_log_column *column = imk_even_record_column(&log->record, member[0]);
+    const imk_identify_log *log = t->log;
+    const imk_log_column *column = imk_even_record_column(&log->record, t->member[0]);
     const imk_unit floor_unit = imk_channel_term(column, IMK_NOISE_BIAS_INSTABILITY).unit;
     double largest = 0;
-    for (size_t k = 0; k < members; k++)
-        largest = fmax(largest, fabs(log->result[member[k]].mean));
+    for (size_t k = 0; k < t->members; k++)
+        largest = fmax(largest, fabs(log->result[t->member[k]].mean));
     const imk_unit mean_unit = imk_channel_readable_unit(column, largest);
-    imk_table_row(table, "Allan minimum / 0.664\t%s", floor_unit.text);
-    for (size_t k = 0; k < members; k++)
-        imk_table_add(table, "%.4g", log->result[member[k]].minimum_floor / floor_unit.scale);
-    imk_table_row(table, "mean of the record\t%s", mean_unit.text);
-    for (size_t k = 0; k < members; k++)
-        imk_table_add(table, "%.5g", log->result[member[k]].mean / mean_unit.scale);
-    imk_table_row(table, "model holds from tau =\ts");
-    for (size_t k = 0; k < members; k++)
-        from_cell(table, log->result[member[k]].valid_from);
-    imk_table_row(table, "five terms hold from tau =\ts");
-    for (size_t k = 0; k < members; k++)
-        from_cell(table, log->result[member[k]].five_terms_from);
+    imk_table *table = imk_result_table(result, 0);
+    imk_table_row(table,
+                  "%s\tmean [%s]\tAllan minimum / 0.664 [%s]\tmodel holds, tau [s]\tfive terms "
+                  "hold [s]",
+                  kind, mean_unit.text, floor_unit.text);
+    for (size_t k = 0; k < t->members; k++) {
+        const imk_identification *r = &log->result[t->member[k]];
+        imk_table_row(table, "%s\t%.5g\t%.4g",
+                      imk_channel_axis_name(imk_even_record_column(&log->record, t->member[k])),
+                      r->mean / mean_unit.scale, r->minimum_floor / floor_unit.scale);
+        range_cell(table, r->valid_from, r->valid_to);
+        range_cell(table, r->five_terms_from, r->valid_to);
+    }
+    imk_result_gap(result);
 }
 
 void imki_identify_tables(const imk_identify_log *log, imk_result *result)
 {
     for (imk_channel_kind kind = IMK_CHANNEL_GYRO; kind < IMK_CHANNEL_KINDS; kind++) {
         size_t member[IMK_LOG_COLUMNS_MAX];
-        const size_t members = imki_members(&log->record, kind, member);
-        if (members == 0)
+        term_table t = {
+            .log = log, .member = member, .members = imki_members(&log->record, kind, member)};
+        if (t.members == 0)
             continue;
-        imk_table *table = imk_result_table(result, 0);
-        imk_table_row(table, "%s\tunit", imk_channel_kind_name(kind));
-        for (size_t k = 0; k < members; k++)
-            imk_table_add(table, "%s",
-                          imk_channel_axis_name(imk_even_record_column(&log->record, member[k])));
-        term_rows(table, log, member, members);
-        if (log->origin == IMK_IDENTIFY_RECORD)
-            record_rows(table, log, member, members);
+        t.table = imk_result_table(result, 0);
+        imk_table_row(t.table, "%s\taxis\tvalue ± 1 sigma\t%g %% interval\tunit",
+                      imk_channel_kind_name(kind), 100 * log->settings.confidence);
+        term_rows(&t);
         imk_result_gap(result);
+        if (log->origin == IMK_IDENTIFY_RECORD)
+            show_records(&t, imk_channel_kind_name(kind), result);
     }
 }
 

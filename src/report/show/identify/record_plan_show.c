@@ -86,6 +86,75 @@ static void show_records(const imk_record_plan *p, imk_result *result)
                                 "constant for this time.");
 }
 
+/* ---- judgement ------------------------------------------------------------------------------- */
+
+/* A term that a record shows with less than this chance is not one to rely on. */
+static const double surely_found = 0.95;
+
+static size_t found_in(const imk_record_plan *p, const imk_plan_record *record, size_t *terms)
+{
+    size_t found = 0;
+    *terms = 0;
+    for (size_t k = 0; k < p->parameter_count; k++) {
+        if (p->parameter[k].time)
+            continue;
+        *terms += 1;
+        found += record->told && record->detection[k] >= surely_found;
+    }
+    return found;
+}
+
+static void judge_wishes(const imk_record_plan *p, imki_reasons *reasons)
+{
+    size_t unmet = 0;
+    for (size_t k = 0; k < p->requirement_count; k++) {
+        const imk_plan_requirement *asked = &p->requirement[k];
+        if (asked->duration <= p->duration)
+            continue;
+        unmet++;
+        imki_reason(reasons, "\"%s\" of the %s needs %s", asked->text,
+                    kind_of(&p->parameter[asked->parameter]),
+                    isfinite(asked->duration) ? rough_duration(asked->duration).text
+                                              : "more than any record");
+    }
+    if (unmet == 0)
+        imki_reason(reasons, "a record of %s meets what is wanted",
+                    rough_duration(p->duration).text);
+    imki_judge(reasons, unmet == 0 ? IMK_USABLE : IMK_NOT_USABLE,
+               unmet == 0 ? "" : " for what is wanted");
+}
+
+/* The planned record; if none is planned, the shortest that shows all terms, or the longest. */
+static void judge(const imk_record_plan *p, imk_result *result)
+{
+    imki_reasons reasons = {.result = result};
+    const imk_plan_record *best = NULL;
+    size_t terms = 0;
+    if (p->requirement_count > 0) {
+        judge_wishes(p, &reasons);
+        return;
+    }
+    for (size_t d = 0; d < p->record_count; d++) {
+        const imk_plan_record *record = &p->record[d];
+        const bool all = best && found_in(p, best, &terms) == terms;
+        if (record->told && (record->planned || (p->duration <= 0 && !all)))
+            best = record;
+    }
+    const size_t found = best ? found_in(p, best, &terms) : 0;
+    if (best)
+        imki_reason(&reasons,
+                    "a record of %s shows %zu of the %zu noise terms of the model, each with a "
+                    "chance of 95 %% or more",
+                    rough_duration(best->duration).text, found, terms);
+    else
+        imki_reason(&reasons, "a record of this length shows nothing of the noise");
+    imki_judge(&reasons,
+               found == 0      ? IMK_NOT_USABLE
+               : found < terms ? IMK_USABLE_WITH_CARE
+                               : IMK_USABLE,
+               "");
+}
+
 /* ---- data ------------------------------------------------------------------------------------ */
 
 static const char *key_of(const imk_plan_parameter *parameter, imk_result *result)
@@ -130,6 +199,7 @@ static void show_data(const imk_record_plan *p, const char *name, imk_result *re
     imk_result_quantity(result, "rate", p->settings.rate, "Hz");
     imk_result_end(result);
     imk_result_object(result, "result");
+    judge(p, result);
     imk_result_array(result, "wishes");
     for (size_t k = 0; k < p->requirement_count; k++)
         requirement_data(p, &p->requirement[k], result);

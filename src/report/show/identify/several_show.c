@@ -263,6 +263,8 @@ static void record_data(const imk_identify_shown *record, imk_result *result)
     imk_result_count(result, "rows", (long long)record->log->record.rows);
     imk_result_quantity(result, "interval", record->log->record.dt, "s");
     imki_channels_data(record->log, result);
+    imk_result_usability(result, imk_verdict_usability(&record->verdict),
+                         imk_identify_sentence(&record->verdict));
     imki_verdict_data(&record->verdict, result);
     imk_result_end(result);
 }
@@ -294,6 +296,8 @@ static void show_data(const imk_identify_several *s, const imk_identify_shown *j
     for (size_t r = 0; r < s->count; r++)
         record_data(&records[r], result);
     imk_result_end(result);
+    imk_result_judge(result, imk_verdict_usability(&joint->verdict), "%s",
+                     imk_identify_sentence(&joint->verdict));
     imki_verdict_data(&joint->verdict, result);
     imk_result_end(result);
 }
@@ -305,6 +309,7 @@ static void show_joint(const imk_identify_several *s, const imk_identify_shown *
 {
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, s->rates ? "Estimate" : "Joint estimate");
+    imki_identify_figure(joint, s->rates ? "the longest log" : "all logs, pooled", result);
     imk_result_for(result, IMK_FOR_BOTH);
     imki_identify_tables(joint->log, result);
     if (s->rates) {
@@ -314,22 +319,11 @@ static void show_joint(const imk_identify_several *s, const imk_identify_shown *
                         "longest.",
                         records[s->longest].label);
         imk_result_gap(result);
-        imk_result_for(result, IMK_FOR_PAGE);
-        imki_identify_figure(joint,
-                             "Points: the Allan deviations of the longest log, with "
-                             "confidence intervals. Line: its model.",
-                             result);
         return;
     }
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_line(result, "One set of terms for all logs, by maximum likelihood on their spectra "
                             "together. Each log has its own mean, ramp and lines.");
-    imki_identify_figure(
-        joint,
-        "Points: the Allan deviations of all logs, pooled, with confidence intervals. Line: the "
-        "joint model. Below: the difference of each point from the model, converted by its "
-        "probability to standard deviations of a normal distribution.",
-        result);
 }
 
 static void show_bias(const imk_identify_several *s, const imk_identify_shown *joint,
@@ -362,10 +356,8 @@ void imk_show_identify_several(const imk_identify_several *s, const imk_identify
                      "%.150s: %zu logs of %zu channels, %s together", joint->name, s->count,
                      s->joint.record.count, imki_duration(duration).text);
     imk_result_for(result, IMK_FOR_PAGE);
-    imk_result_heading(result, "Verdict");
-    imki_verdict_boxes(&joint->verdict, result);
+    imki_verdict_brief_boxes(&joint->verdict, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
-    imk_result_line(result, "%s", imk_identify_sentence(&joint->verdict));
     for (size_t r = 0; r < s->count; r++)
         if (imk_verdict_usability(&records[r].verdict) != IMK_USABLE)
             imk_result_line(result, "%s: %s", records[r].label,
@@ -385,9 +377,13 @@ void imk_show_identify_several(const imk_identify_several *s, const imk_identify
     if (s->runs)
         show_bias(s, joint, result);
     imk_result_for(result, IMK_FOR_PAGE);
-    imk_result_heading(result, "The logs");
-    for (size_t r = 0; r < s->count; r++)
+    imk_result_heading(result, "What was found in the logs");
+    imki_verdict_boxes(&joint->verdict, result);
+    for (size_t r = 0; r < s->count; r++) {
+        imk_result_line(result, "%s: %s", records[r].label,
+                        imk_identify_sentence(&records[r].verdict));
         imki_verdict_boxes(&records[r].verdict, result);
+    }
     imk_result_for(result, IMK_FOR_TERMINAL);
     for (size_t r = 0; r < s->count; r++)
         imki_verdict_lines(&records[r].verdict, joint->verbose, result);

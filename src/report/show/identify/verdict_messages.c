@@ -50,11 +50,6 @@ bool imk_verdict_warns(const imk_verdict *v)
 void imki_verdict_data(const imk_verdict *v, imk_result *result)
 {
     static const char *const levels[] = {"good", "note", "warning", "failure"};
-    static const char *const grades[] = {"usable", "usable with care", "not usable"};
-    imk_result_object(result, "usability");
-    imk_result_text(result, "grade", grades[imk_verdict_usability(v)]);
-    imk_result_text(result, "sentence", imk_identify_sentence(v));
-    imk_result_end(result);
     imk_result_array(result, "verdict");
     for (size_t k = 0; k < v->count; k++) {
         imk_result_object(result, NULL);
@@ -68,10 +63,29 @@ void imki_verdict_data(const imk_verdict *v, imk_result *result)
 
 void imki_verdict_boxes(const imk_verdict *v, imk_result *result)
 {
-    imk_result_finding(result, (int)imk_verdict_level(v), imk_identify_sentence(v));
     for (size_t k = 0; k < v->count; k++)
         if (strcmp(v->message[k].code, "good") != 0)
             imk_result_finding(result, (int)v->message[k].level, v->message[k].text);
+}
+
+/* One box of doubts and one of notes: a page begins with the picture, not with a column of boxes.
+ */
+void imki_verdict_brief_boxes(const imk_verdict *v, imk_result *result)
+{
+    for (int doubts = 1; doubts >= 0; doubts--) {
+        const char *all = NULL;
+        imk_finding_level level = IMK_FINDING_GOOD;
+        for (size_t k = 0; k < v->count; k++) {
+            const imk_message *m = &v->message[k];
+            const char *text = m->brief ? m->brief : m->text;
+            if (strcmp(m->code, "good") == 0 || (m->level >= IMK_FINDING_WARNING) != (doubts > 0))
+                continue;
+            all = all ? imk_result_key(result, "%s %s", all, text) : text;
+            level = m->level > level ? m->level : level;
+        }
+        if (all)
+            imk_result_finding(result, (int)level, all);
+    }
 }
 
 void imki_verdict_lines(const imk_verdict *v, bool verbose, imk_result *result)

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CLAUSES_MOST = 3, WORDS_MOST = 110 };
+enum { WORDS_MOST = 110 };
 
 static const struct words {
     const char *code;
@@ -265,31 +265,21 @@ static const char *usable(const imk_verdict *v)
 
 const char *imk_identify_sentence(const imk_verdict *v)
 {
-    static const char *const grades[] = {"Usable", "Usable with care", "Not usable"};
     const imk_usability usability = imk_verdict_usability(v);
     const imk_finding_level level =
         usability == IMK_NOT_USABLE ? IMK_FINDING_FAILURE : IMK_FINDING_WARNING;
     if (usability == IMK_USABLE)
         return usable(v);
-    const char *text = imk_result_key(v->result, "%s", grades[usability]), *last = NULL;
-    size_t told = 0, left = 0;
+    imki_reasons reasons = {.result = v->result};
+    const char *last = NULL;
     for (size_t k = 0; k < v->count; k++) {
         const imk_message *m = &v->message[k];
         if (m->level != level || (last && m->clause == last)) /* of another sensor, too */
             continue;
         last = m->clause;
-        if (told == CLAUSES_MOST) {
-            left++;
-            continue;
-        }
-        text = imk_result_key(v->result, "%s%s %s", text, told++ == 0 ? ":" : ";",
-                              m->clause ? m->clause : m->text);
+        imki_reason(&reasons, "%s", m->clause ? m->clause : m->text);
     }
-    if (left > 0)
-        text = imk_result_key(v->result, "%s; and %zu more", text, left);
-    const size_t length = strlen(text);
-    return length > 0 && strchr(".?", text[length - 1]) ? text
-                                                        : imk_result_key(v->result, "%s.", text);
+    return imki_judgement(&reasons, usability, "");
 }
 
 /* ---- list ------------------------------------------------------------------------------------ */

@@ -32,4 +32,7 @@ void imki_sweep_data(const imk_physics_sweep *l, int sensor, imk_result *result)
 void imki_show_physics_run(const imk_physics_shown *p, imk_result *result);
 void imki_show_sweep_figure(const imk_physics_shown *p, imk_result *result);
 
+/* physics_judgement.c: in the object of the data that is open. */
+void imki_judge_physics(const imk_physics_shown *p, imk_result *result);
+
 #endif

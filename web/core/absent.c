@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What a page has not: threads, processes, pipes, gnuplot, HDF5 and SQLite. Functions that would
+ * use them do without or say so. */
+#include "campaign/campaign_run.h"
+#include "drift/drift_parts.h"
+
+#include "base/text_internal.h"
+#include "imukit/figure_file.h"
+#include "imukit/memory_limit.h"
+#include "imukit/thread_pool.h"
+#include "io/file/input_copy_internal.h"
+#include "io/file/leftovers_internal.h"
+#include "io/file/nameless_file_internal.h"
+#include "io/foreign/parameter_internal.h"
+#include "io/log/log_formats_internal.h"
+#include "io/log/log_reader_internal.h"
+#include "io/plot/gnuplot_internal.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/types.h>
+#include <unistd.h>
+#include <zstd.h>
+
+/* ---- threads: one ------------------------------------------------------------------------- */
+
+imk_thread_pool *imk_thread_pool_create(size_t threads)
+{
+    (void)threads;
+    return NULL;
+}
+
+void imk_thread_pool_destroy(imk_thread_pool *pool)
+{
+    (void)pool;
+}
+
+size_t imk_thread_pool_threads(const imk_thread_pool *pool)
+{
+    (void)pool;
+    return 1;
+}
+
+static void run_serial(void *context, size_t count, imk_work work, void *work_context)
+{
+    (void)context;
+    for (size_t i = 0; i < count; i++)
+        work(work_context, i);
+}
+
+imk_executor imk_thread_pool_executor(imk_thread_pool *pool)
+{
+    (void)pool;
+    return (imk_executor){.run = run_serial, .context = NULL, .threads = 1};
+}
+
+size_t imk_memory_limit(void)
+{
+    return (size_t)4000 * 1024 * 1024; /* of the addresses of 32 bits */
+}
+
+/* ---- signals and what they would leave ------------------------------------------------------ */
+
+void imki_signals_hold(sigset_t *before)
+{
+    *before = 0;
+}
+
+void imki_signals_release(const sigset_t *before)
+{
+    (void)before;
+}
+
+int imki_leftover_add(const char *name)
+{
+    (void)name;
+    return -1;
+}
+
+void imki_leftover_drop(int slot)
+{
+    (void)slot;
+}
+
+void imk_output_file_abandon_all(void) {}
+
+/* ---- pipes, temporary files ----------------------------------------------------------------- */
+
+imk_status imki_copy_make(const struct stat *about, int file, const char *path,
+                          imki_known_bytes *known, const void *context, imk_error *error)
+{
+    (void)about, (void)file, (void)known, (void)context;
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path, "a stream that is read twice",
+                         "a file");
+}
+
+imk_status imki_copy_open(const struct stat *about, bool kept, int *file, imk_error *error)
+{
+    (void)about, (void)kept, (void)error;
+    *file = -1;
+    return IMK_OK;
+}
+
+imk_status imki_nameless_write(int file, const char *bytes, size_t size, const char *path,
+                               imk_error *error)
+{
+    (void)file, (void)bytes, (void)size;
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path, "a stream that is read twice",
+                         "a file");
+}
+
+int imki_open_nameless(void)
+{
+    errno = ENOTSUP;
+    return -1;
+}
+
+/* There are no links, and one folder: a name is what it says. */
+char *realpath(const char *path, char *resolved)
+{
+    while (path[0] == '/' || (path[0] == '.' && path[1] == '/'))
+        path++;
+    const size_t size = strlen(path) + 1;
+    char *place = resolved ? resolved : malloc(size);
+    return place ? memcpy(place, path, size) : NULL;
+}
+
+/* One process, and no permissions. */
+pid_t getpid(void)
+{
+    return 1;
+}
+
+int fchmod(int file, mode_t mode)
+{
+    (void)file, (void)mode;
+    return 0;
+}
+
+/* ---- programs and libraries ------------------------------------------------------------------ */
+
+bool imk_plot_available(void)
+{
+    return false;
+}
+
+imk_status imki_gnuplot_draw(const imk_figure *figure, imki_drawing *drawing, char **image,
+                             size_t *size, imk_error *error)
+{
+    (void)figure, (void)drawing, (void)image, (void)size;
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", "gnuplot", "a name ending in .svg");
+}
+
+static imk_status refuse(imk_log_reader *reader, imk_error *error)
+{
+    (void)reader;
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, NULL, "a format that the page cannot read",
+                         "a file that the command has converted: imukit convert LOG out.npz");
+}
+
+const imki_log_codec imki_log_hdf5 = {.open = refuse};
+const imki_log_codec imki_log_rosbag2 = {.open = refuse};
+
+/* Zstandard is read, not written. */
+ZSTD_CCtx *ZSTD_createCCtx(void)
+{
+    return NULL;
+}
+
+size_t ZSTD_freeCCtx(ZSTD_CCtx *context)
+{
+    (void)context;
+    return 0;
+}
+
+size_t ZSTD_compressBound(size_t size)
+{
+    return size;
+}
+
+size_t ZSTD_compress2(ZSTD_CCtx *context, void *out, size_t room, const void *in, size_t size)
+{
+    (void)context, (void)out, (void)room, (void)in, (void)size;
+    return (size_t)-1;
+}
+
+ZSTD_CStream *ZSTD_createCStream(void)
+{
+    return NULL;
+}
+
+size_t ZSTD_freeCStream(ZSTD_CStream *stream)
+{
+    (void)stream;
+    return 0;
+}
+
+size_t ZSTD_CCtx_setParameter(ZSTD_CCtx *context, ZSTD_cParameter parameter, int value)
+{
+    (void)context, (void)parameter, (void)value;
+    return (size_t)-1;
+}
+
+size_t ZSTD_compressStream2(ZSTD_CCtx *context, ZSTD_outBuffer *output, ZSTD_inBuffer *input,
+                            ZSTD_EndDirective end)
+{
+    (void)context, (void)output, (void)input, (void)end;
+    return (size_t)-1;
+}
+
+/* Called by bzip2 for a mistake of its own. */
+void bz_internal_error(int number);
+void bz_internal_error(int number)
+{
+    (void)number;
+    abort();
+}
+
+/* ---- XML, campaigns ------------------------------------------------------------------------- */
+
+static void refuse_gazebo(imki_parameters *p)
+{
+    p->status = imk_error_set(p->error, IMK_ERROR_UNSUPPORTED, NULL, "Gazebo's SDF",
+                              "another format: this one is for the command");
+}
+
+void imki_gazebo_read(imki_parameters *p)
+{
+    refuse_gazebo(p);
+}
+
+void imki_gazebo_write(imki_parameters *p)
+{
+    refuse_gazebo(p);
+}
+
+size_t campaign_threads(uint64_t asked)
+{
+    (void)asked;
+    return 1;
+}
+
+int drift_runs(const drift_options *o, const drift_scene *scene, imk_drift_models *r)
+{
+    (void)o, (void)scene, (void)r;
+    return command_failed("--monte-carlo is for the command, not for the page");
+}
+
+int drift_results(const drift_options *o, const char *path)
+{
+    (void)o, (void)path;
+    return command_failed("results of runs are for the command, not for the page");
+}
