@@ -11,7 +11,7 @@ function layOutInstrument(view, answer) {
   view.terminal = element('pre', { tabindex: 0 });
   view.root.append(
     element('h1', {}, about.title[0].toUpperCase() + about.title.slice(1)),
-    about.description ? element('p', {}, about.description) : null,
+    element('p', {}, about.description || ''),
     element('div', { class: 'instrument' },
       element('section', { 'aria-label': 'Drawing and controls' }, view.drawing, makeRunControls(view), makeInputs(view), makeDesign(view)),
       element('section', { 'aria-label': 'Curves and quantities' }, view.charts.map(({ root }) => root), element('h2', {}, 'Quantities'), view.quantities)),
@@ -164,11 +164,11 @@ function makeField({ label, text, help, change }) {
 function showQuantities(view) {
   const { about } = view;
   const row = ({ name, equation, unit }, cell) =>
-    element('tr', {}, element('th', { scope: 'row' }, name, equation ? element('code', {}, equation) : null), element('td', {}, cell, ' ', unit && unit !== '1' ? unit : ''));
+    element('tr', {}, element('th', { scope: 'row' }, name, equation ? element('code', {}, equation) : null), element('td', {}, cell, '\u00a0', unit && unit !== '1' ? unit : ''));
   view.values = about.quantities.map(() => element('output', { class: 'number' }));
   const open = view.quantities.querySelector('details');
   const derived = element('table', {}, element('tbody', {}, about.derived.map((one) =>
-    row(one, one.value === null ? `– (${one.absent || 'none'})` : shownNumber(one.value)))));
+    row(one, one.value === null ? element('span', { class: 'absent' }, `– (${one.absent || 'none'})`) : shownNumber(one.value)))));
   view.quantities.replaceChildren(
     ...(about.quantities.length
       ? [element('table', {}, element('tbody', {}, about.quantities.map((one, i) => row(one, view.values[i])))),

@@ -41,7 +41,7 @@ class StripChart {
   add(time, ...values) {
     const at = (this.first + this.count) % this.room;
     this.time[at] = time;
-    values.forEach((value, c) => (this.curves[c][at] = value));
+    this.curves.forEach((curve, c) => (curve[at] = values[c]));
     if (this.count < this.room) this.count++;
     else this.first = (this.first + 1) % this.room;
   }

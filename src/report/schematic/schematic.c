@@ -33,7 +33,7 @@ static const char style[] =
     ".s-one{stroke:#d55e00;stroke-width:3}.s-two{stroke:#0072b2;stroke-width:3}\n"
     ".s-accent{stroke:#00805d;stroke-width:3}.s-wide{stroke-width:46}\n"
     ".s-shaft{stroke-width:5}.s-rim{stroke:none}.s-glowing{fill:#ffd23f;stroke:none}\n"
-    ".s-rim-marks{stroke-width:40}.s-fill-one{fill:#d55e00;stroke:none}\n"
+    ".s-rim-marks{stroke-width:40}.s-ring{stroke-width:9}.s-fill-one{fill:#d55e00;stroke:none}\n"
     ".s-fill-two{fill:#0072b2;stroke:none}.s-fill-accent{fill:#00805d;stroke:none}\n"
     ".s-head{stroke:none;fill:#1f2933}.s-head.s-one{fill:#d55e00}\n"
     ".s-head.s-two{fill:#0072b2}.s-head.s-accent{fill:#00805d}\n"
