@@ -66,6 +66,7 @@ typedef struct imk_panel {
         *note; /**< lines below the label of the x axis, separated by line feeds; NULL: none */
     bool allan_deviation; /**< of a rate against averaging time: a page can lay the deviations of
                              other sensors over it */
+    double y_low, y_high; /**< what the y axis spans, if y_low < y_high; then x spans lines, too */
 } imk_panel;
 
 /** Panels on a grid, row by row. Panels are larger if regions have labels. The title is drawn only

@@ -118,7 +118,7 @@ const imukitPanel = (() => {
   /* A piece of the curve, for the key. */
   function sample(curve) {
     const d = isFilled(curve) ? 'M0 2h22v8h-22z' : isLine(curve) ? 'M1 6h20'
-      : curve.style === 'marks' ? 'M11 0l6 6l-6 6l-6-6z' : 'M11 6h0';
+      : curve.style === 'marks' ? 'M11 0l6 6l-6 6l-6-6z' : 'M11 6h.1';
     return svg('svg', {width: 22, height: 12, viewBox: '0 0 22 12', 'aria-hidden': true},
       svg('path', {class: `${curve.style} c${curve.color}`, d}));
   }

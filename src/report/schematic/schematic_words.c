@@ -31,29 +31,28 @@ static void put_piece(imki_text *out, const char *begin, const char *end)
 
 static void put_words(imki_text *out, const char *text)
 {
+    int shift = 0; /* of what was written last [px] */
     for (const char *c = text; *c;) {
         const size_t plain = strcspn(c, "_^");
+        if (plain > 0 && shift != 0)
+            imki_text_add(out, "<tspan dy=\"%d\">", -shift);
         put_piece(out, c, c + plain);
+        if (plain > 0 && shift != 0)
+            imki_text_put(out, "</tspan>");
+        shift = plain > 0 ? 0 : shift;
         c += plain;
         if (!*c)
             return;
-        const int shift = *c == '_' ? 5 : -7;
+        const int to = *c == '_' ? 5 : -7;
         const char *begin = c + 1, *end = end_of(begin);
         if (!end || end == begin)
             return;
         const bool braces = *begin == '{';
-        imki_text_add(out, "<tspan class=\"small\" dy=\"%d\">", shift);
+        imki_text_add(out, "<tspan class=\"small\" dy=\"%d\">", to - shift);
         put_piece(out, begin + braces, end);
-        c = end + braces;
-        /* nothing follows at the end, and an empty tspan would not move it back */
-        const size_t rest = *c == '_' || *c == '^' ? 0 : strcspn(c, "_^");
         imki_text_put(out, "</tspan>");
-        if (rest > 0) {
-            imki_text_add(out, "<tspan dy=\"%d\">", -shift);
-            put_piece(out, c, c + rest);
-            imki_text_put(out, "</tspan>");
-            c += rest;
-        }
+        c = end + braces;
+        shift = to;
     }
 }
 
