@@ -27,7 +27,8 @@ const reports = ['elements', 'axes', 'panel', 'overlay', 'figures'].map((name) =
 const script = [...reports, text('page/elements.js'), text('page/engine.js'),
   ...['slider', 'strip_chart', 'schematic', 'instrument_layout',
     'bench_parts', 'bench_target', 'bench_noise', 'bench_heading', 'bench_grades'].map((name) => text(`page/${name}.js`)), 'const screens = {};',
-  ...screens.map((name) => text('page/screens/' + name)), text('page/app.js'), 'begin();'].map(lean).join('\n');
+  ...screens.map((name) => text('page/screens/' + name)),
+  ...['subjects', 'equation', 'answer', 'figure'].map((name) => text(`page/tour/${name}.js`)), text('page/app.js'), 'begin();'].map(lean).join('\n');
 const worker = [text('page/wasi.js'), text('page/live.js'), text('page/unpack.js'), text('page/worker.js')].map(lean).join('\n');
 const hash = createHash('sha256').update(script).digest('base64');
 const policy = [`default-src 'none'`, `script-src 'sha256-${hash}' 'wasm-unsafe-eval'`, `worker-src blob:`,
