@@ -18,12 +18,12 @@ if(NOT physics_sources) # a library has a file
 endif()
 list(FILTER io_sources INCLUDE REGEX "/(${IMUKIT_FILE_FILTER})[^/]*$")
 set(page_assets ${PROJECT_BINARY_DIR}/page_assets.c)
-file(GLOB page_parts CONFIGURE_DEPENDS src/report/page_*.js)
+file(GLOB page_parts CONFIGURE_DEPENDS src/report/page/*.js)
 add_custom_command(
   OUTPUT ${page_assets}
   COMMAND ${CMAKE_COMMAND} -DOUTPUT=${page_assets}
           -P ${PROJECT_SOURCE_DIR}/cmake/write_page_assets.cmake
-  DEPENDS cmake/write_page_assets.cmake ${page_parts} src/report/page_style.css)
+  DEPENDS cmake/write_page_assets.cmake ${page_parts} src/report/page/page_style.css)
 list(APPEND io_sources ${page_assets})
 
 # One file per instruction set, chosen at run time; the rest is compiled for the base machine.

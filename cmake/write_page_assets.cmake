@@ -5,7 +5,7 @@
 #
 # What it defines is declared in src/report/page_internal.h. The whole script is also left beside it,
 # as page_script.js.
-set(folder ${CMAKE_CURRENT_LIST_DIR}/../src/report)
+set(folder ${CMAKE_CURRENT_LIST_DIR}/../src/report/page)
 
 # The bytes of a file as the elements of an array that ends with a zero.
 function(read_bytes file result)

@@ -43,7 +43,7 @@ PUBLIC = {
     "navigate": "aiding alignment drift filter_tuning navigate navigation_filter "
                 "navigation_smoother standing_start standstill",
     "physics": "instrument laboratory",  # and of each folder of src/physics
-    "report": "report result show",
+    "report": "report result schematic show",
     "io": "campaign design_file figure_file firmware_file io log memory_limit model_file "
           "aid_text motion_file output_file parameter_file thread_pool",
 }

@@ -284,12 +284,13 @@ static int show_shard(const work *w)
     imk_result_text(result, "shard", o->shard);
     imk_result_end(result);
     imk_result_object(result, "result");
+    imk_result_judge(result, IMK_USABLE_WITH_CARE,
+                     "Usable with care, as part %s of a campaign: %s has %llu runs.", o->shard,
+                     o->output, (unsigned long long)w->r->run_count);
     imk_result_text(result, "output", o->output);
     imk_result_count(result, "runs", (long long)w->r->run_count);
     imk_result_end(result);
-    imk_result_line(result,
-                    "%s: %llu runs.\nNext, with all parts: imukit merge PART.h5... -o WHOLE.h5",
-                    o->output, (unsigned long long)w->r->run_count);
+    imk_result_line(result, "Next, with all parts: imukit merge PART.h5... -o WHOLE.h5");
     return show_end(result, &(show_options){.json = o->json}, EXIT_DONE);
 }
 

@@ -29,6 +29,7 @@
 #include "imukit/record_plan.h"
 #include "imukit/report.h"
 #include "imukit/result.h"
+#include "imukit/schematic.h"
 #include "imukit/show.h"
 #include "imukit/simulate_log.h"
 #include "imukit/spectrum_log.h"

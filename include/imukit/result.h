@@ -121,6 +121,10 @@ IMK_API void imk_result_break(imk_result *result);
 IMK_API void imk_result_animation(imk_result *result, const imk_animation *animation,
                                   const char *caption);
 
+/** Add a drawing to the page, the SVG text of imk_schematic_svg() or imk_schematic_animated();
+ *  nothing on the terminal. */
+IMK_API void imk_result_drawing(imk_result *result, const char *svg, const char *caption);
+
 /** A table, filled row by row; the first row is the header. A table without rows is not shown. */
 typedef struct imk_table imk_table;
 /** Begin a table.
@@ -182,7 +186,7 @@ IMK_API imk_status imk_result_to_text(const imk_result *result, const char *bold
 IMK_API imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size,
                                       imk_error *error);
 /** Render the display as the <article> of that page, to be put into a page of others. That page
- *  needs src/report/page_style.css and the parts of the script in src/report (page_*.js), whose
+ *  needs the style sheet and the scripts of src/report/page, whose
  *  `imukitFigures.attach(element)` makes what is below an element interactive.
  *  @param error  also tells why a figure could not be drawn */
 IMK_API imk_status imk_result_to_fragment(const imk_result *result, char **text, size_t *size,

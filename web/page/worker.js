@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A worker: does verbs and runs instruments, away from the page. It is begun with the bytes of the
+// A worker: does verbs and runs instruments, away from the page. It is begun with the compiled
 // module; each verb has an instance of its own.
 //
-// Messages in:  { module }                                   once
+// Messages in:  { packed: text }                             answered by { module }, and that is all
+//               { module }                                   once
 //               { id, words, files, environment }            a verb; files: [[name, Blob or bytes]]
 //               { id, live: NAME_OF_FUNCTION, values: […] }  see live.js
-// Messages out: { id, progress: text } and then { id, code, out, err, files } or { id, failed }
+// Messages out: { id, progress: text } and then { id, code, out, err, files } or { id, failed, kind }
 
 'use strict';
 
@@ -35,10 +36,11 @@ async function doVerb({ id, words, files, environment }) {
 
 onmessage = async ({ data }) => {
   try {
-    if (data.module) compiled = WebAssembly.compile(data.module);
+    if (data.packed) postMessage({ module: await WebAssembly.compile(unpackLzma(bytesOf(data.packed))) });
+    else if (data.module) compiled = data.module;
     else if (data.live) await doLive(data);
     else await doVerb(data);
   } catch (reason) {
-    postMessage({ id: data.id, failed: String((reason && reason.message) || reason) });
+    postMessage({ id: data.id, failed: String((reason && reason.message) || reason), kind: reason && reason.name });
   }
 };

@@ -54,7 +54,7 @@ bool imki_info_counted(const imk_info_log *info)
 /* A gyro or an accelerometer whose values are all the same. */
 const imk_info_channel *imki_info_constant(const imk_info_log *info)
 {
-    for (size_t i = 0; i < info->channel_count; i++) {
+    for (size_t i = 0; info->rows_read > 1 && i < info->channel_count; i++) {
         const imk_info_channel *c = &info->channel[i];
         if ((c->column.quantity == IMK_QUANTITY_ANGULAR_RATE ||
              c->column.quantity == IMK_QUANTITY_SPECIFIC_FORCE) &&
@@ -120,6 +120,8 @@ static bool add_obstacles(const imk_info_log *info, imki_reasons *reasons)
 {
     const imk_info_channel *constant = imki_info_constant(info);
     const size_t told = reasons->told;
+    if (info->rows_read < 2)
+        imki_reason(reasons, "there is only one row");
     if (count_of(info, IMK_QUANTITY_ANGULAR_RATE) + count_of(info, IMK_QUANTITY_SPECIFIC_FORCE) ==
         0)
         imki_reason(reasons, "no column is read as one of a gyro or an accelerometer");

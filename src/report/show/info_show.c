@@ -224,9 +224,12 @@ static void show_channels(const imk_info_log *info, imk_result *result)
             imk_table_add(table, "texts");
             continue;
         }
-        imk_table_add(table, "%.5g\t%.3g\t%.5g\t%.5g", in_unit(c, c->mean),
-                      c->scatter / c->column.unit.scale, in_unit(c, c->lowest),
-                      in_unit(c, c->highest));
+        imk_table_add(table, "%.5g", in_unit(c, c->mean));
+        if (isfinite(c->scatter))
+            imk_table_add(table, "%.3g", c->scatter / c->column.unit.scale);
+        else
+            imk_table_add(table, "-");
+        imk_table_add(table, "%.5g\t%.5g", in_unit(c, c->lowest), in_unit(c, c->highest));
         if (c->step > 0)
             imk_table_add(table, "%.3g", c->step / c->column.unit.scale);
         else

@@ -5,6 +5,7 @@
 #include "report/result_internal.h"
 
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,23 +29,40 @@ void imki_reason(imki_reasons *reasons, const char *format, ...)
     reasons->told++;
 }
 
+/* "NAME: " or "NAME in OTHER: " that a message begins with, of a name "NAME<tab>OTHER".
+ * @return its length; 0: there is none */
+static size_t length_of_name(const char *text, const char *name)
+{
+    char begins[2 * IMKI_WORDS];
+    const char *tab = strchr(name, '\t');
+    const int length = tab ? (int)(tab - name) : (int)strlen(name);
+    snprintf(begins, sizeof begins, "%.*s: ", length, name);
+    if (tab && strncmp(text, begins, strlen(begins)) != 0)
+        snprintf(begins, sizeof begins, "%.*s in %s: ", length, name, tab + 1);
+    return length > 0 && strncmp(text, begins, strlen(begins)) == 0 ? strlen(begins) : 0;
+}
+
 /* What a message says before it explains or advises: to the first colon or semicolon behind the
  * name it begins with, not within parentheses. */
 static int length_of_fact(const char *text, const char *name)
 {
-    const char *const names[] = {name, "the record"};
-    const char *end = text;
-    for (size_t k = 0; k < 2 && end == text; k++) {
-        const size_t length = strlen(names[k]);
-        if (length > 0 && strncmp(text, names[k], length) == 0 && text[length] == ':')
-            end += length + 1;
-    }
+    const size_t named = length_of_name(text, name);
+    const char *end = text + (named > 0 ? named : length_of_name(text, "the record"));
     for (int depth = 0; *end; end++) {
         depth += (*end == '(') - (*end == ')');
         if (depth == 0 && strchr(";:.", *end) && (end[1] == ' ' || !end[1]))
             break;
     }
     return (int)(end - text);
+}
+
+void imki_reason_of_message(imki_reasons *reasons, const char *text)
+{
+    const char *colon = strstr(text, ": ");
+    char name[IMKI_WORDS] = "";
+    if (colon && colon - text < (ptrdiff_t)sizeof name)
+        snprintf(name, sizeof name, "%.*s", (int)(colon - text), text);
+    imki_reason(reasons, "%.*s", length_of_fact(text, name), text);
 }
 
 /* Warnings of the kind of one of them, before it or behind it. */

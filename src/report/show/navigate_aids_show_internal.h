@@ -12,4 +12,7 @@ void imki_show_aids_table(const imk_navigate_log *n, imk_result *result);
 /* Panels of innovations against time. */
 void imki_show_aids_panels(const imk_navigate_log *n, imk_figure_builder *figure);
 
+/* navigate_judgement.c: in the object of the data that is open. */
+void imki_judge_navigation(const imk_navigate_log *n, imk_result *result);
+
 #endif

@@ -104,6 +104,7 @@ static void show_data(const imk_navigate_log *n, const char *name, imk_result *r
     const imk_navigation_filter_counts *c = &n->counts;
     show_inputs(n, name, result);
     imk_result_object(result, "result");
+    imki_judge_navigation(n, result);
     show_start(n, result);
     show_last(n, result);
     imk_result_quantity(result, "horizontal_distance", distance(n), "m");
@@ -301,11 +302,12 @@ static void show_page(const imk_navigate_log *n, const char *name, imk_result *r
     imk_readable_duration(n->record.dt * (double)n->record.rows, length, sizeof length);
     imk_result_title(result, "Navigation of a log", "%.120s: %zu samples, %g Hz, %s", name,
                      n->record.rows, 1.0 / n->record.dt, length);
-    imk_result_heading(result, "Verdict");
     show_drift(n, imki_warned(&n->findings) ? 1 : 0, result);
     if (accepted + refused > 0)
         imk_result_line(result, "Zero-velocity updates: %llu, refused %llu.", accepted, refused);
     imki_show_warnings(&n->findings, result);
+    imk_result_heading(result, "Track");
+    show_track(n, name, result);
     imk_result_heading(result, "Attitude at the start");
     imk_result_line(
         result,
@@ -316,8 +318,6 @@ static void show_page(const imk_navigate_log *n, const char *name, imk_result *r
                                     : "Found by the unit itself, at rest",
         n->attitude[0] / degree, n->attitude[1] / degree, n->attitude[2] / degree,
         hypot(n->attitude_sigma[0], n->attitude_sigma[1]) / degree, n->attitude_sigma[2] / degree);
-    imk_result_heading(result, "Track");
-    show_track(n, name, result);
     if (n->aid_count > 0)
         imk_result_heading(result, "Aids");
     imki_show_aids_table(n, result);

@@ -60,6 +60,8 @@ void imki_reason(imki_reasons *reasons, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /* What the warnings say, without their advice. */
 void imki_reasons_of_warnings(imki_reasons *reasons, const imk_findings *findings);
+/* The same of a message, behind the name it begins with. */
+void imki_reason_of_message(imki_reasons *reasons, const char *text);
 /* "Usable with care for a first look: reason; reason." @param use  " for a first look", or "" */
 const char *imki_judgement(const imki_reasons *reasons, imk_usability usability, const char *use);
 /* The same as the judgement of the result, in the object of its data that is open. */

@@ -166,6 +166,7 @@ static void show_data(const imk_drift_models *r, const imk_drift_shown *shown, i
 {
     show_inputs(r, shown, result);
     imk_result_object(result, "result");
+    imki_judge_drift(r, &shown->verdict, result);
     imk_result_array(result, "models");
     for (size_t c = 0; c < r->case_count; c++)
         show_case(r, shown, &r->cases[c], result);
@@ -308,6 +309,7 @@ void imk_show_drift_runs(const imk_drift_models *r, const char *words, imk_resul
 {
     const imk_drift_shown shown = {.motion = NULL};
     imk_result_object(result, "result");
+    imki_judge_drift(r, &shown.verdict, result);
     show_runs_data(r, result);
     imk_result_end(result);
     show_title(r, &shown, result);

@@ -25,6 +25,9 @@ void imki_drift_show_aids(const imk_drift_models *r, const char *filter_model, i
 void imki_drift_aid_value(const imk_drift_settings *s, const char *name, double factor,
                           imki_text *text);
 
+/* drift_judgement.c: in the object of the data that is open. */
+void imki_judge_drift(const imk_drift_models *r, const imk_verdict *verdict, imk_result *result);
+
 /* Each table behind an empty line. Growth of one case, two of one model, or several models. */
 void imki_drift_show_growth(const imk_drift_models *r, imk_result *result);
 void imki_drift_show_budget(const imk_drift_models *r, const imk_drift_case *one,

@@ -457,6 +457,7 @@ void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *
     imki_show_texts(result, "models", r->count, r->name);
     imk_result_end(result);
     imk_result_object(result, "result");
+    imki_judge_grade(r, result);
     imk_result_array(result, "models");
     for (size_t m = 0; m < r->count; m++)
         show_data(r->graded[m], r->name[m], r->assumed ? &r->assumed[m] : NULL, result);
@@ -476,5 +477,6 @@ void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *
     imk_result_for(result, IMK_FOR_PLOT);
     imki_show_grade_plot(r, map, result);
     imk_result_for(result, IMK_FOR_PAGE);
+    imki_show_grade_noise(r, result);
     imki_show_grade_maps(r, result);
 }

@@ -73,6 +73,7 @@ static void show_data(const imk_physics_shown *p, imk_result *result)
         settings_data(p, result);
     imk_result_end(result);
     imk_result_object(result, "result");
+    imki_judge_physics(p, result);
     if (overview) {
         imki_instrument_data(p->settings->instrument, "instrument", result);
         imki_design_data(p, result);
@@ -94,9 +95,9 @@ static void show_run(const imk_physics_shown *p, const imk_physics_log *r, imk_r
 {
     char length[60];
     imk_readable_duration(p->settings->duration, length, sizeof length);
-    imk_result_line(result, "%s: %llu samples at %g Hz, %s, %s, internal step %.4g s\n",
-                    imki_physics_name(p), (unsigned long long)r->samples, p->settings->physics.rate,
-                    length,
+    imk_result_line(result, "%s: %llu sample%s at %g Hz, %s, %s, internal step %.4g s\n",
+                    imki_physics_name(p), (unsigned long long)r->samples,
+                    r->samples == 1 ? "" : "s", p->settings->physics.rate, length,
                     p->settings->physics.level == IMK_LEVEL_FULL ? "full dynamics" : "slow map",
                     internal_step(p));
     imk_table *table = imk_result_table(result, 0xeu);
@@ -147,6 +148,7 @@ void imk_show_physics(const imk_physics_shown *p, imk_result *result)
     imk_result_for(result, IMK_FOR_PAGE);
     if (p->description && p->description[0])
         imk_result_line(result, "%s", p->description);
+    imki_show_schematic(p, result);
     if (!p->run)
         return;
     imk_result_heading(result, "Outputs against time");

@@ -16,6 +16,9 @@ void imki_design_data(const imk_physics_shown *p, imk_result *result);
 void imki_show_design(const imk_physics_shown *p, imk_result *result);
 void imki_show_overview(const imk_physics_shown *p, imk_result *result);
 
+/* physics_schematic_show.c: the schematic in motion; nothing of an instrument without one. */
+void imki_show_schematic(const imk_physics_shown *p, imk_result *result);
+
 /* physics_derived_show.c: what follows from the parts of the design. */
 void imki_show_derived(const imk_physics_shown *p, imk_result *result);
 void imki_derived_data(const imk_physics_shown *p, imk_result *result);
@@ -31,5 +34,8 @@ void imki_sweep_data(const imk_physics_sweep *l, int sensor, imk_result *result)
  * sine; what a laboratory found. */
 void imki_show_physics_run(const imk_physics_shown *p, imk_result *result);
 void imki_show_sweep_figure(const imk_physics_shown *p, imk_result *result);
+
+/* physics_judgement.c: in the object of the data that is open. */
+void imki_judge_physics(const imk_physics_shown *p, imk_result *result);
 
 #endif
