@@ -45,6 +45,7 @@ function showSubject(root, number) {
     element('h1', {}, `${number}. ${subject.title}`),
     element('div', { class: 'columns' }, element('section', {}, subjectText(subject)), drawing),
     showExercise(subject.exercise, () => (tourAnswered.add(number), renew())), steps());
+  lowerIndices(root);
   const end = showTourFigure(drawing, subject.figure);
   drawing.prepend(element('p', { class: 'caption' }, subject.figure.caption));
   const key = (event) => {
@@ -61,7 +62,7 @@ function showSubject(root, number) {
 }
 
 function subjectText({ text, equations, letters }) {
-  return [...text.map((part) => element('p', {}, part)), ...equations.map(equation), element('p', { class: 'weak' }, letters)];
+  return [...text.map((part) => element('p', {}, part)), ...equations.map(equation), element('p', { class: 'weak' }, withIndices(letters))];
 }
 
 /** A question, a field, and the command that answers. */
@@ -128,6 +129,7 @@ function showHandout(root) {
         await handoutFigure(subject.figure), element('p', {}, element('strong', {}, 'Exercise. '), subject.exercise.question),
         ...(subject.exercise.table ? [element('pre', {}, subject.exercise.table)] : []));
     }
+    lowerIndices(root);
     status.textContent = '';
   })().catch((reason) => (status.textContent = reason.message));
   return () => (ended = true);
