@@ -116,7 +116,7 @@ class VerbView {
     this.problem.replaceChildren();
     if (!error) return;
     this.problem.append(element('p', {}, error.message));
-    if (error.next) this.problem.append(element('pre', { tabindex: '0' }, error.next));
+    if (error.next) this.problem.append(element('pre', { tabindex: '0' }, error.next.replace(' --json', '')));
   }
 
   /** Do a verb and give what it did, with `json`; null when it was cancelled or gave nothing.

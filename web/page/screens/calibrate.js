@@ -43,7 +43,7 @@ class CalibrateScreen {
       element('p', {}, 'Put the unit down, let it rest, turn it by hand to the next attitude, let it rest, and so on, while it is logged. Angles need not be exact: gravity is the reference. x, y and z are the axes of the log: +x is up where the x accelerometer reads +1 g.'),
       this.makeSettings(), this.plan.root, this.now, this.poses,
       element('h2', {}, 'The log of the session'), this.choice.root,
-      element('p', {}, 'No log at hand? ', element('button', { type: 'button', id: 'calibrate-example', onclick: () => this.example() }, 'Take an example: these poses, simulated')),
+      element('p', { class: 'no-print' }, 'No log at hand? ', element('button', { type: 'button', id: 'calibrate-example', onclick: () => this.example() }, 'Take an example: these poses, simulated')),
       this.options.root, this.calibrated.root);
     this.renew = settled(() => this.showPlan());
   }

@@ -30,7 +30,7 @@ class LogScreen {
     root.append(element('h1', {}, 'What is my sensor worth?'),
       element('p', {}, 'Record the sensor at rest, for an hour or more, and put the log here: text or CSV, .npy, .npz, PX4 ULog, ArduPilot .bin, ROS 1 bag, MCAP, UBX and others, also compressed. You get its noise with intervals, a verdict on the log, and a model to use elsewhere.'),
       this.choice.root,
-      element('p', {}, 'No log at hand? ', element('button', { type: 'button', id: 'log-example', onclick: () => this.example() }, 'Take an example: an hour of a tactical unit, simulated')),
+      element('p', { class: 'no-print' }, 'No log at hand? ', element('button', { type: 'button', id: 'log-example', onclick: () => this.example() }, 'Take an example: an hour of a tactical unit, simulated')),
       this.options.root, this.about.root, this.sort, this.go, this.identified.root);
   }
 
