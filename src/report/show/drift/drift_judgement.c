@@ -45,14 +45,25 @@ static void add_limit(const imk_drift_models *r, const imk_drift_case *one, imki
                     imki_drift_moment(r, r->times->time[one->time], text));
 }
 
+/* A message without the label of its case, where there is one model. */
+static const char *without_label(const imk_drift_models *r, const char *text)
+{
+    for (size_t c = 0; r->model_count == 1 && c < r->case_count; c++) {
+        const size_t length = strlen(r->cases[c].label);
+        if (strncmp(text, r->cases[c].label, length) == 0 && strncmp(text + length, ": ", 2) == 0)
+            return text + length + 2;
+    }
+    return text;
+}
+
 /* Doubts that are not about times at which there is no position any more. */
-static bool add_doubts(const imk_verdict *v, imki_reasons *reasons)
+static bool add_doubts(const imk_drift_models *r, const imk_verdict *v, imki_reasons *reasons)
 {
     const size_t told = reasons->told;
     for (size_t k = 0; k < v->count; k++)
         if (strcmp(v->message[k].code, "no_position") != 0 &&
             strcmp(v->message[k].code, "nonlinear") != 0)
-            imki_reason_of_message(reasons, v->message[k].text);
+            imki_reason_of_message(reasons, without_label(r, v->message[k].text));
     return reasons->told > told;
 }
 
@@ -64,7 +75,7 @@ static void judge_time(const imk_drift_models *r, const imk_drift_case *one, con
     char text[IMKI_DRIFT_TIME], cep[IMK_READABLE_SIZE], use[IMKI_DRIFT_TIME + 20] = "";
     const size_t rows = rows_within(r, one, usable_error), good = rows_within(r, one, good_error);
     const char *figure = one ? "CEP" : "CEP of the runs";
-    const bool doubts = add_doubts(v, reasons);
+    const bool doubts = add_doubts(r, v, reasons);
     if (rows == 0) {
         const double first = cep_at(r, one, 0);
         if (isfinite(first))
@@ -104,7 +115,7 @@ static void judge_models(const imk_drift_models *r, const imk_verdict *v, imki_r
         else
             imki_reason(reasons, "%s not even for %s", one->label, time_text(r, 0, text));
     }
-    const bool doubts = add_doubts(v, &(imki_reasons){.result = reasons->result});
+    const bool doubts = add_doubts(r, v, &(imki_reasons){.result = reasons->result});
     imki_judge(reasons,
                !any     ? IMK_NOT_USABLE
                : doubts ? IMK_USABLE_WITH_CARE
@@ -128,7 +139,7 @@ static void judge_want(const imk_drift_models *r, const imk_verdict *v, imki_rea
         imki_reason(reasons, "the figure is %s%s", one->missing_count > 0 ? "at least " : "",
                     imk_readable_quantity(present, &want->unit, now));
     add_limit(r, one, reasons);
-    const bool doubts = add_doubts(v, reasons);
+    const bool doubts = add_doubts(r, v, reasons);
     imki_judge(reasons, !met ? IMK_NOT_USABLE : doubts ? IMK_USABLE_WITH_CARE : IMK_USABLE, use);
 }
 
