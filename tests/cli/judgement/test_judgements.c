@@ -2,7 +2,7 @@
 /* The sentence that each verb begins with: one log or model that deserves a good one, and one that
  * does not. The verdicts of identify and calibrate have tests of their own
  * (test_identify_words.c, test_calibrate_verdict.c). */
-#include "run_command.h"
+#include "cli/run_command.h"
 
 /* The first line that a command prints, on standard output or, where a log goes there, on standard
  * error; warnings before it are passed over. */
