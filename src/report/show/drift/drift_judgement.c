@@ -35,14 +35,31 @@ static const char *time_text(const imk_drift_models *r, size_t row, char text[IM
     return imki_drift_moment(r, imki_drift_row_time(r, row), text);
 }
 
-/* "gyro bias repeatability makes 73 % of the variance after 1 h" */
-static void add_limit(const imk_drift_models *r, const imk_drift_case *one, imki_reasons *reasons)
+/* "gyro bias repeatability makes 55 % of the variance after 10 min" */
+static void add_share(const imk_drift_models *r, const char *source, double share, double time,
+                      imki_reasons *reasons)
 {
     char text[IMKI_DRIFT_TIME];
-    if (one && one->share_count > 0 && one->share[0].share > 0)
-        imki_reason(reasons, "%s makes %.0f %% of the variance after %s",
-                    one->analysis->source[one->share[0].source].text, 100 * one->share[0].share,
-                    imki_drift_moment(r, r->times->time[one->time], text));
+    if (share > 0)
+        imki_reason(reasons, "%s makes %.0f %% of the variance after %s", source, 100 * share,
+                    imki_drift_moment(r, time, text));
+}
+
+/* What makes the error where it becomes too large, or at the end: at a row of the table. */
+static void add_limit(const imk_drift_models *r, const imk_drift_case *one, size_t row,
+                      imki_reasons *reasons)
+{
+    const imk_drift_analysis *a = one ? one->analysis : NULL;
+    const size_t last = r->times->row_count - 1;
+    const size_t t = a ? r->times->row[row < last ? row : last] : 0;
+    size_t largest = 0;
+    if (!a || a->source_count == 0)
+        return;
+    for (size_t k = 1; k < a->source_count; k++)
+        if (imki_drift_share_at(a, k, t) > imki_drift_share_at(a, largest, t))
+            largest = k;
+    add_share(r, a->source[largest].text, imki_drift_share_at(a, largest, t), r->times->time[t],
+              reasons);
 }
 
 /* A message without the label of its case, where there is one model. */
@@ -83,7 +100,7 @@ static void judge_time(const imk_drift_models *r, const imk_drift_case *one, con
                         imk_readable_figure(IMK_REQUIRED_CEP, first, cep), time_text(r, 0, text));
         else
             imki_reason(reasons, "there is none after %s already", time_text(r, 0, text));
-        add_limit(r, one, reasons);
+        add_limit(r, one, 0, reasons);
         imki_judge(reasons, IMK_NOT_USABLE, " for a position");
         return;
     }
@@ -95,7 +112,7 @@ static void judge_time(const imk_drift_models *r, const imk_drift_case *one, con
     else if (good == rows)
         imki_reason(reasons, "it is %s then",
                     imk_readable_figure(IMK_REQUIRED_CEP, cep_at(r, one, rows - 1), cep));
-    add_limit(r, one, reasons);
+    add_limit(r, one, rows, reasons);
     imki_judge(reasons, doubts ? IMK_USABLE_WITH_CARE : IMK_USABLE, use);
 }
 
@@ -138,7 +155,9 @@ static void judge_want(const imk_drift_models *r, const imk_verdict *v, imki_rea
     if (isfinite(present))
         imki_reason(reasons, "the figure is %s%s", one->missing_count > 0 ? "at least " : "",
                     imk_readable_quantity(present, &want->unit, now));
-    add_limit(r, one, reasons);
+    if (one->share_count > 0)
+        add_share(r, one->analysis->source[one->share[0].source].text, one->share[0].share,
+                  want->time, reasons);
     const bool doubts = add_doubts(r, v, reasons);
     imki_judge(reasons, !met ? IMK_NOT_USABLE : doubts ? IMK_USABLE_WITH_CARE : IMK_USABLE, use);
 }
