@@ -229,7 +229,7 @@ void imki_page_animation(imki_page *page, const imk_animation *animation, const 
         element(page, "<p class=\"verdict note\">Animation left out: ", error.found, ".</p>\n");
         return;
     }
-    imki_text_put(&page->text, "<figure class=\"animation\">\n");
+    imki_text_put(&page->text, "<figure class=\"animation\" tabindex=\"0\">\n");
     put_svg(page, svg);
     element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
     free(svg);
