@@ -40,7 +40,7 @@ const imukitPanel = (() => {
   /* Points of {x, y, lower, upper} from the numbers of a curve; null is a gap. */
   function pointsOf(curve) {
     const points = [], p = curve.points;
-    for (let i = 0; i < p.length; i += curve.width) {
+    for (let i = 0; i < p.length; i += Math.max(curve.width, 2)) {
       if (p[i] === null)
         points.push(null);
       else if (curve.width === 3)
