@@ -664,11 +664,10 @@ static void test_design_for_a_model(void **state)
 static void test_points_beyond_the_axis(void **state)
 {
     (void)state;
-    assert_int_equal(
-        run("$I physics tuned_gyro --rate '10 deg/s' -d 10s --plot t.svg && grep -o "
-            "'[0-9]* of 1000 points are beyond\\|from 0.01 to 0.02 s"
-            "' t.svg"),
-        0);
+    assert_int_equal(run("$I physics tuned_gyro --rate '10 deg/s' -d 10s --plot t.svg && grep -o "
+                         "'[0-9]* of 1000 points are beyond\\|from 0.01 to 0.02 s"
+                         "' t.svg"),
+                     0);
     check_contains(out, "2 of 1000 points are beyond\nfrom 0.01 to 0.02 s\n", "figure");
     assert_int_equal(
         run("$I physics rate_gyro -d 10s --plot r.svg && ! grep 'beyond\\|0\\.18' r.svg"), 0);

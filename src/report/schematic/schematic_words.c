@@ -48,7 +48,7 @@ static void put_words(imki_text *out, const char *text)
         if (!end || end == begin)
             return;
         const bool braces = *begin == '{';
-        imki_text_add(out, "<tspan class=\"small\" dy=\"%d\">", to - shift);
+        imki_text_add(out, "<tspan class=\"s-small\" dy=\"%d\">", to - shift);
         put_piece(out, begin + braces, end);
         imki_text_put(out, "</tspan>");
         c = end + braces;
@@ -76,7 +76,7 @@ void imki_draw_text(imki_drawing *d, imki_side side, double x, double y, const c
 
 void imki_draw_note(imki_drawing *d, imki_side side, double x, double y, const char *text)
 {
-    put_text(d, " class=\"note\"", side, x, y, text);
+    put_text(d, " class=\"s-note\"", side, x, y, text);
 }
 
 void imki_draw_label(imki_drawing *d, imki_side side, double x, double y, const char *text,
@@ -203,5 +203,5 @@ void imki_draw_time(imki_drawing *d)
              : pace > 1.05 ? "time sped up %s ×"
                            : "true time",
              number);
-    imki_draw_note(d, IMKI_START, 10, 390, text);
+    put_text(d, " class=\"note pace\"", IMKI_START, 10, 390, text);
 }
