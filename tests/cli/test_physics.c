@@ -536,6 +536,9 @@ static void test_refusals(void **state)
          E "--duration runs the instrument and --reduce does not: leave one out\n" TRY("physics")},
         {"ring_laser --view 1", 2,
          E "--view is drawn by --plot FILE or --animate FILE: add one\n" TRY("physics")},
+        {"ring_laser -d 1s --report a.pdf", 2,
+         E "--report a.pdf: a report is a page, FILE.html; a browser prints it as PDF: chromium "
+           "--headless --no-pdf-header-footer --print-to-pdf=FILE.pdf FILE.html\n" TRY("physics")},
         {"ring_laser -d 1s --plot a.gif", 2,
          E "--plot a.gif: expected a name ending in .svg, .png or .pdf, or the word term\n" TRY(
              "physics")},
