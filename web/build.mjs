@@ -23,10 +23,13 @@ function packed(path) {
 const screens = readdirSync(here('page/screens')).filter((name) => name.endsWith('.js')).sort();
 const order = ['log', 'device', 'calibrate', 'grades', 'instruments', 'bench', 'tour'];
 screens.sort((a, b) => order.indexOf(a.slice(0, -3)) - order.indexOf(b.slice(0, -3)));
-const script = [readFileSync(wasm.replace(/[^/]*$/, 'page_script.js'), 'utf8'), text('page/elements.js'), text('page/engine.js'),
-  ...['slider', 'strip_chart', 'schematic', 'instrument_layout', 'verb_view', 'file_choice', 'reading_options', 'sensors', 'conversion',
-    'data_sheet', 'pose_drawing', 'bench_parts', 'bench_target', 'bench_noise', 'bench_heading', 'bench_grades'].map((name) => text(`page/${name}.js`)), 'const screens = {};',
-  ...screens.map((name) => text('page/screens/' + name)), text('page/app.js'), 'begin();'].map(lean).join('\n');
+// Scripts that others use when they begin come first; those of the worker are apart.
+const first = ['elements.js', 'engine.js'], apart = ['wasi.js', 'live.js', 'unpack.js', 'worker.js', 'app.js'];
+const inFolder = (folder) => readdirSync(here('page/' + folder)).filter((name) => name.endsWith('.js')).sort().map((name) => folder + name);
+const shared = inFolder('').filter((name) => !first.includes(name) && !apart.includes(name));
+const script = [readFileSync(wasm.replace(/[^/]*$/, 'page_script.js'), 'utf8'), ...first.map((name) => text('page/' + name)),
+  ...shared.map((name) => text('page/' + name)), 'const screens = {};',
+  ...screens.map((name) => text('page/screens/' + name)), ...inFolder('tour/').map((name) => text('page/' + name)), text('page/app.js'), 'begin();'].map(lean).join('\n');
 const worker = [text('page/wasi.js'), text('page/live.js'), text('page/unpack.js'), text('page/worker.js')].map(lean).join('\n');
 const hash = createHash('sha256').update(script).digest('base64');
 const policy = [`default-src 'none'`, `script-src 'sha256-${hash}' 'wasm-unsafe-eval'`, `worker-src blob:`,

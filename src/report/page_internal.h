@@ -4,6 +4,7 @@
 #define IMUKI_PAGE_INTERNAL_H
 
 #include "growing_text_internal.h"
+#include "imukit/model.h"
 
 #include "imukit/report.h"
 
@@ -50,5 +51,8 @@ imk_status imki_page_take(imki_page *page, char **text, size_t *size, imk_error 
 
 /* The Allan deviations of all sensors of the catalogue [rad/s, m/s^2], as JSON. */
 void imki_catalogue_data(imki_text *out);
+/* Allan deviation of all noise terms of a triad together, on its worst axis [rad/s, m/s^2], without
+ * what rounded readings add. @param time  averaging time [s] */
+double imki_noise_deviation(const imk_triad *triad, double time);
 
 #endif

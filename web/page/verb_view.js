@@ -40,6 +40,13 @@ function articleOf(page) {
   return article;
 }
 
+/** The nodes of a section of an article: its heading and all up to the next one of its level. */
+function sectionOf(article, title) {
+  const heading = [...article.querySelectorAll('h3')].find(({ textContent }) => textContent === title), nodes = [];
+  for (let node = heading; node && (node === heading || node.tagName !== 'H3'); node = node.nextElementSibling) nodes.push(node);
+  return nodes;
+}
+
 /** A line of the command with a button that copies it. */
 function terminalLine(lines, title = 'The same at a terminal') {
   const text = lines.map(commandLine).join('\n');
@@ -144,10 +151,18 @@ class VerbView {
     return done.code === 0 || (done.json && done.json.result) ? done : null;
   }
 
-  /** Show the report of a verb; what stood there stays until now. */
-  showReport(page, ...after) {
-    this.result.replaceChildren(articleOf(decodeText(page)), ...after);
+  /** Show the report of a verb; what stood there stays until now.
+   *  beside: elements below its first sentence; after: below all; edit: changes the article. */
+  showReport(page, { beside = [], after = [], edit = () => [] } = {}) {
+    const article = articleOf(decodeText(page)), judgement = article.querySelector('.judgement') || article.querySelector('.subtitle, .title');
+    judgement.after(...beside, ...edit(article));
+    this.result.replaceChildren(article, ...after);
     imukitFigures.attach(this.result);
+  }
+
+  /** Bring the result into view if it is below what is seen. */
+  comeIntoView() {
+    if (this.result.getBoundingClientRect().top > 0.4 * innerHeight) this.root.scrollIntoView({ block: 'start' });
   }
 
   clear() {

@@ -110,7 +110,7 @@ const imukitPanel = (() => {
     const make = isFilled(curve) ? bandPath : isLine(curve) ? linePath
       : curve.style === 'marks' ? markPath : dotPath;
     const made = [svg('path', {class: `${curve.style} c${curve.color}`, d: make(spots)})];
-    if (!isFilled(curve) && !isLine(curve) && spots.some(spot => spot && spot.lower !== undefined))
+    if (curve.bars)
       made.unshift(svg('path', {class: `bars c${curve.color}`, d: barPath(spots)}));
     return made;
   }
@@ -260,5 +260,5 @@ const imukitPanel = (() => {
       ...regionNames(panel), svg('g', {class: 'pointed'}));
   }
 
-  return {draw, svg, pointsOf, spotOf, sample, isFilled};
+  return {draw, svg, pointsOf, spotOf, boxOf, sample, isFilled};
 })();

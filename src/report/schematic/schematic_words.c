@@ -203,5 +203,5 @@ void imki_draw_time(imki_drawing *d)
              : pace > 1.05 ? "time sped up %s ×"
                            : "true time",
              number);
-    imki_draw_note(d, IMKI_START, 10, 390, text);
+    put_text(d, " class=\"s-note pace\"", IMKI_START, 10, 390, text);
 }

@@ -37,8 +37,8 @@ class CalibrateScreen {
     this.poses = element('ol', { class: 'poses', id: 'calibrate-poses' });
     this.now = element('div', { class: 'pose-now', id: 'calibrate-now', hidden: true });
     root.append(element('h1', {}, 'Calibrate without equipment'),
-      element('p', {}, 'Put the unit down, let it rest, turn it by hand to the next attitude, let it rest, and so on, while it is logged. Angles need not be exact: gravity is the reference.'),
-      this.makeSettings(), this.plan.root, this.poses, this.now,
+      element('p', {}, 'Put the unit down, let it rest, turn it by hand to the next attitude, let it rest, and so on, while it is logged. Angles need not be exact: gravity is the reference. x, y and z are the axes of the log: +x is up where the x accelerometer reads +1 g.'),
+      this.makeSettings(), this.plan.root, this.now, this.poses,
       element('h2', {}, 'The log of the session'), this.choice.root,
       element('p', {}, 'No log at hand? ', element('button', { type: 'button', id: 'calibrate-example', onclick: () => this.example() }, 'Take an example: these poses, simulated')),
       this.options.root, this.calibrated.root);
@@ -169,16 +169,17 @@ class CalibrateScreen {
   showCalibrated(done, words, report, model) {
     const page = fileOf(done, report), bytes = fileOf(done, model);
     const made = this.made && words[1] === 'session.csv' ? this.made : [];
-    const after = element('section', {}, this.makeRepeat(done.json.result), element('h2', {}, 'To take away'),
-      downloadButtons([['Model (YAML)', 'calibrated.yaml', bytes], ['Report (HTML)', 'report.html', page], ['Numbers (JSON)', 'calibrate.json', done.out]].filter(([, , content]) => content)));
+    const offers = [['Model (YAML)', 'calibrated.yaml', bytes], ['Report (HTML)', 'report.html', page], ['Numbers (JSON)', 'calibrate.json', done.out]];
+    const beside = [downloadButtons(offers.filter(([, , content]) => content)), this.makeRepeat(done.json.result)];
     if (bytes) {
       sensors.keep('calibrated.yaml', bytes);
-      after.append(element('p', {}, element('a', { href: '#device/calibrated.yaml' }, 'What a navigator with this sensor does'), '. To take the errors out of a log: ',
+      beside.push(element('p', {}, element('a', { href: '#device/calibrated.yaml' }, 'What a navigator with this sensor does'), '. To take the errors out of a log: ',
         element('code', {}, 'imukit compensate LOG calibrated.yaml -o clean.csv')));
     }
-    after.append(terminalLine([...made, words]));
-    if (page) this.calibrated.showReport(page, after);
-    else this.calibrated.result.replaceChildren(element('pre', { tabindex: '0' }, done.out), after);
+    const after = [terminalLine([...made, words])];
+    if (page) this.calibrated.showReport(page, { beside, after });
+    else this.calibrated.result.replaceChildren(element('pre', { tabindex: '0' }, done.out), ...beside, ...after);
+    this.calibrated.comeIntoView();
   }
 
   /** Poses that the solution has left out or counts for less. */

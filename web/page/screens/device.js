@@ -4,7 +4,7 @@
 //
 // Names for tests: #device-source-catalogue|sheet|file (radio buttons), #device-search, #device-list,
 // #device-beside, #data-sheet (#sheet-text; fields data-key="gyro.bias.repeatability" …),
-// #device-file-input, #device-curve, #device-grade, #device-drift (data-part="status|error|result"),
+// #device-file-input, #device-entry, #device-grade, #device-drift (data-part="status|error|result"),
 // #device-sliders. Address: #device/NAME.
 
 'use strict';
@@ -35,14 +35,14 @@ class DeviceScreen {
   constructor(root) {
     this.settings = { duration: '60 min', latitude: '45 deg', yaw: '0 deg', 'initial-attitude': '0 deg', aligned: 'given', aid: '' };
     this.name = null;
-    this.curve = new VerbView({ id: 'device-curve' });
+    this.entry = new VerbView({ id: 'device-entry' });
     this.graded = new VerbView({ id: 'device-grade' });
     this.drift = new VerbView({ id: 'device-drift', own: true });
     this.sheet = new DataSheet({ change: settled(() => this.takeSheet(), 400) });
     this.renewDrift = settled(() => this.showDrift());
-    root.append(element('h1', {}, 'What does a sensor do for me?'), element('div', { class: 'two' }, this.makeSources(),
-      element('div', {}, element('h2', { class: 'chosen', id: 'device-name' }, 'No sensor chosen yet'), this.curve.root,
-        this.graded.root, this.makeDrift())));
+    root.append(element('h1', {}, 'What does a sensor do for me?'), element('div', { class: 'two' },
+      element('div', { class: 'beside' }, this.makeSources(), this.makeConditions()),
+      element('div', {}, element('h2', { id: 'device-name' }, 'No sensor chosen yet'), this.makeEntry(), this.drift.root, this.graded.root)));
   }
 
   /* ---- which sensor ---- */
@@ -65,7 +65,7 @@ class DeviceScreen {
 
   makeCatalogue() {
     this.search = element('input', { type: 'search', id: 'device-search', oninput: () => this.fill(), autocomplete: 'off' });
-    this.list = element('select', { id: 'device-list', size: 12, class: 'list', onchange: () => this.choose(this.list.value) });
+    this.list = element('select', { id: 'device-list', size: 9, class: 'list', onchange: () => this.choose(this.list.value) });
     return element('div', {}, element('div', { class: 'field' }, element('label', { for: 'device-search' }, 'Search'), this.search),
       element('div', { class: 'field' }, element('label', { for: 'device-list' }, 'Sensors'), this.list));
   }
@@ -123,36 +123,51 @@ class DeviceScreen {
 
   /* ---- what it does ---- */
 
-  async showAll() {
-    if (!this.name) return;
-    const turn = (this.turn = (this.turn || 0) + 1);
-    for (const [view, verb] of [[this.curve, 'devices'], [this.graded, 'grade']]) {
-      const words = [verb, ...sensors.words(this.names()), '--report', 'report.html'];
-      const done = await view.run(words, { files: sensors.files(this.names()) });
-      if (turn !== this.turn) return;
-      if (done) view.showReport(fileOf(done, 'report.html'), terminalLine([words]));
-      else view.result.replaceChildren();
-      if (!done && view === this.curve) break;
-    }
-    this.renewDrift();
+  /** Source, notes and model file. */
+  makeEntry() {
+    return element('details', { class: 'wide' }, element('summary', {}, 'Its model file and where the figures are from'), this.entry.root);
   }
 
-  makeDrift() {
+  async showAll() {
+    if (!this.name) return;
+    this.renewDrift();
+    const turn = (this.turn = (this.turn || 0) + 1), names = this.names(), files = sensors.files(names);
+    const words = ['grade', ...sensors.words(names), '--report', 'grade.html'];
+    const done = await this.graded.run([...words, '--json'], { files });
+    if (turn !== this.turn) return;
+    if (done) this.graded.showReport(fileOf(done, 'grade.html'), { after: [terminalLine([words])], edit: (article) => this.arrange(article) });
+    else this.graded.result.replaceChildren();
+    this.showEntry();
+  }
+
+  /** The noise first; the maps have a screen of their own. @return what stands below the judgement */
+  arrange(article) {
+    const maps = sectionOf(article, 'Maps');
+    for (const node of maps) node.remove();
+    return [...sectionOf(article, 'Noise'), element('p', {}, element('a', { href: '#grades/' + encodeURIComponent(this.name) }, 'Where it stands on the maps of technologies'), '.')];
+  }
+
+  async showEntry() {
+    const own = sensors.own.get(this.name), words = ['devices', this.name];
+    const text = own ? decodeText(own) : ((await this.entry.run(words)) || { out: '' }).out;
+    this.entry.result.replaceChildren(element('pre', { tabindex: '0' }, text),
+      downloadButtons([['Model (YAML)', own ? this.name : this.name.replace(/\W+/g, '-') + '.yaml', text]]), own ? '' : terminalLine([words]));
+  }
+
+  /** Sliders and choices: each change computes the drift anew. */
+  makeConditions() {
     const slider = (option, label, text, unit, minimum, maximum, logarithmic) => makeSlider({ label, text, unit, minimum, maximum, logarithmic,
       change: (value) => this.set(option, value) }).row;
-    const select = (option, label, choices) => element('div', { class: 'slider wide' }, element('label', { for: 'device-' + option }, label),
+    const select = (option, label, choices) => element('div', { class: 'field' }, element('label', { for: 'device-' + option }, label),
       element('select', { id: 'device-' + option, onchange: (event) => this.set(option, event.target.value) },
         choices.map(([value, text]) => element('option', { value }, text))));
-    return element('section', { 'aria-label': 'Drift' }, element('h2', {}, 'How far off is a navigator with it?'),
-      element('p', {}, 'At rest, by inertial navigation alone or with aids. Move a slider: the errors and what causes them are computed anew.'),
-      element('div', { id: 'device-sliders' },
-        slider('duration', 'Duration', '60 min', 'min', 0.2, 1440, true),
-        slider('latitude', 'Latitude', '45 deg', 'deg', -89, 89),
-        slider('yaw', 'Heading', '0 deg', 'deg', -180, 180),
-        slider('initial-attitude', 'Attitude error at the start, 1 sigma', '0 deg', 'deg', 0, 2),
-        select('aligned', 'Attitude at the start', [['given', 'known, but for this error'], ['self', 'found at rest by the unit itself']]),
-        select('aid', 'Updates', aidChoices)),
-      this.drift.root);
+    return element('section', { 'aria-labelledby': 'device-how', id: 'device-sliders' }, element('h2', { id: 'device-how' }, 'It navigates'),
+      slider('duration', 'for', '60 min', 'min', 0.2, 1440, true),
+      slider('latitude', 'at latitude', '45 deg', 'deg', -89, 89),
+      slider('yaw', 'with the heading', '0 deg', 'deg', -180, 180),
+      slider('initial-attitude', 'with an attitude error at the start, 1 sigma, of', '0 deg', 'deg', 0, 2),
+      select('aligned', 'with an attitude that is', [['given', 'known at the start, but for this error'], ['self', 'found at rest by the unit itself']]),
+      select('aid', 'with updates', aidChoices));
   }
 
   set(option, value) {
@@ -173,7 +188,7 @@ class DeviceScreen {
   async showDrift() {
     const words = this.driftWords();
     this.began = performance.now();
-    const done = await this.drift.run(words, { files: sensors.files(this.names()) });
-    if (done) this.drift.showReport(fileOf(done, 'drift.html'), terminalLine([words]));
+    const done = await this.drift.run([...words, '--json'], { files: sensors.files(this.names()) });
+    if (done) this.drift.showReport(fileOf(done, 'drift.html'), { after: [terminalLine([words])] });
   }
 }

@@ -64,30 +64,38 @@ class GradesScreen {
       return;
     }
     const words = ['grade', ...sensors.words(this.names), ...(this.assumed.value === 'none' ? [] : ['--assume-class', this.assumed.value]), '--report', 'grade.html'];
-    const done = await this.view.run(words, { files: sensors.files(this.names) });
+    const done = await this.view.run([...words, '--json'], { files: sensors.files(this.names) });
     if (!done) return;
-    this.view.showReport(fileOf(done, 'grade.html'), terminalLine([words]));
-    this.nameMaps();
-  }
-
-  panels() {
-    return [...this.view.result.querySelectorAll('figure.panels .panel')];
-  }
-
-  /** The maps that there are, by the titles in their numbers. */
-  nameMaps() {
-    const before = this.map.value;
-    const titles = this.panels().map((panel) => JSON.parse(panel.querySelector('script').textContent).title);
-    this.map.replaceChildren(element('option', { value: '' }, 'all'), ...titles.map((title, i) => element('option', { value: i }, title)));
-    this.map.value = before;
-    if (this.map.selectedIndex < 0) this.map.value = '';
+    this.view.showReport(fileOf(done, 'grade.html'), { after: [terminalLine([words])], edit: (article) => this.arrange(article) });
     this.selectMap();
   }
 
-  /** One map has the room of all. */
+  /** The maps first, each with the sources of its regions folded away. @return the maps */
+  arrange(article) {
+    const before = this.map.value;
+    this.maps = [];
+    for (const node of sectionOf(article, 'Maps').slice(1)) {
+      if (node.matches('figure')) this.maps.push(element('section', {}, node));
+      else this.maps.at(-1)?.append(node);
+    }
+    for (const map of this.maps) this.foldSources(map);
+    sectionOf(article, 'Maps').forEach((node) => node.remove());
+    const titles = this.maps.map((map) => JSON.parse(map.querySelector('figure script').textContent).title);
+    this.map.replaceChildren(element('option', { value: '' }, 'all'), ...titles.map((title, i) => element('option', { value: i }, title)));
+    this.map.value = before;
+    if (this.map.selectedIndex < 0) this.map.value = '';
+    return this.maps;
+  }
+
+  foldSources(map) {
+    const folded = element('details', { class: 'wide' }, element('summary', {}, 'Where the regions are from'));
+    folded.append(...[...map.children].filter((node) => !node.matches('figure')));
+    map.append(folded);
+  }
+
+  /** One map, or all. */
   selectMap() {
     const chosen = this.map.value;
-    this.panels().forEach((panel, i) => (panel.hidden = chosen !== '' && Number(chosen) !== i));
-    for (const figure of this.view.result.querySelectorAll('figure.panels')) figure.classList.toggle('one-map', chosen !== '');
+    (this.maps || []).forEach((map, i) => (map.hidden = chosen !== '' && Number(chosen) !== i));
   }
 }

@@ -198,7 +198,7 @@ class InstrumentView {
     this.about = answer.about;
     showSchematic(this, answer);
     showQuantities(this);
-    this.charts.forEach(({ chart }) => chart.add(this.screen, NaN, NaN));
+    this.charts.forEach(({ chart, sample }) => (chart.add(this.screen, NaN, NaN), sample(answer.about.rate)));
     this.showTerminal();
     if (!this.playing) this.advance(1 / 60);
   }

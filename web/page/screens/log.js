@@ -125,15 +125,17 @@ class LogScreen {
   showIdentified(done, words, report, model) {
     const page = fileOf(done, report), bytes = fileOf(done, model);
     const offers = [['Model (YAML)', 'model.yaml', bytes], ['Report (HTML)', 'report.html', page], ['Numbers (JSON)', 'identify.json', done.out]];
-    const after = element('section', { class: 'take' }, element('h2', {}, 'To take away'), downloadButtons(offers.filter(([, , content]) => content)));
+    const beside = [downloadButtons(offers.filter(([, , content]) => content))];
+    const after = [];
     if (bytes) {
       sensors.keep('model.yaml', bytes);
-      after.append(makeConversion(bytes, done.json.inputs), element('h2', {}, 'What would it cost me?'),
-        element('p', {}, element('a', { href: '#device/model.yaml' }, 'How far a navigator with this sensor drifts, and its class'), ', or ',
-          element('a', { href: '#grades/model.yaml' }, 'where it stands among others'), '.'));
+      beside.push(element('p', {}, 'What would it cost me? ', element('a', { href: '#device/model.yaml' }, 'How far a navigator with this sensor drifts'), ', and ',
+        element('a', { href: '#grades/model.yaml' }, 'where it stands among others'), '.'));
+      after.push(element('h2', {}, 'For another program'), makeConversion(bytes, done.json.inputs));
     }
-    after.append(terminalLine([words]));
-    if (page) this.identified.showReport(page, after);
-    else this.identified.result.replaceChildren(element('pre', { tabindex: '0' }, done.out), after);
+    after.push(terminalLine([words]));
+    if (page) this.identified.showReport(page, { beside, after });
+    else this.identified.result.replaceChildren(element('pre', { tabindex: '0' }, done.out), ...beside, ...after);
+    this.identified.comeIntoView();
   }
 }
