@@ -309,6 +309,36 @@ static void check_sliders(const imk_schematic *s, void *design)
     assert_in_range(fields, 2, 6);
 }
 
+/* At the ends of the range of any field, too, the drawing is one, if the design is possible. */
+static void check_extremes(const imk_schematic *s, void *design)
+{
+    const imk_instrument *instrument = s->instrument;
+    imk_error error;
+    int drawn = 0;
+    for (size_t f = 0; f < instrument->field_count; f++) {
+        const imk_design_field *field = &instrument->fields[f];
+        for (int end = 0; end < 2; end++) {
+            instrument->set_default(design);
+            void *at = (char *)design + field->offset;
+            const double value = end ? field->maximum : field->minimum;
+            if (field->kind == IMK_DESIGN_NUMBER)
+                *(double *)at = value > 0 && field->open && !end ? 1.001 * value : value;
+            else if (field->kind == IMK_DESIGN_COUNT)
+                *(int *)at = (int)value;
+            else if (field->kind == IMK_DESIGN_CHOICE)
+                *(int *)at = end;
+            else
+                *(bool *)at = end;
+            if (imk_design_check(instrument, design, &error) != IMK_OK)
+                continue;
+            check_drawing(s, design);
+            drawn++;
+        }
+    }
+    instrument->set_default(design);
+    assert_true(drawn >= (int)instrument->field_count / 2);
+}
+
 /* Every part moves in the animation, which is short. */
 static void check_animation(const imk_schematic *s, void *design)
 {
@@ -355,6 +385,12 @@ static void test_sliders(void **state)
     for_each(check_sliders);
 }
 
+static void test_extremes(void **state)
+{
+    (void)state;
+    for_each(check_extremes);
+}
+
 static void test_animations(void **state)
 {
     (void)state;
@@ -364,9 +400,9 @@ static void test_animations(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_parts),      cmocka_unit_test(test_quantities),
-        cmocka_unit_test(test_drawings),   cmocka_unit_test(test_sliders),
-        cmocka_unit_test(test_animations),
+        cmocka_unit_test(test_parts),    cmocka_unit_test(test_quantities),
+        cmocka_unit_test(test_drawings), cmocka_unit_test(test_sliders),
+        cmocka_unit_test(test_extremes), cmocka_unit_test(test_animations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
