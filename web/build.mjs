@@ -23,17 +23,19 @@ function packed(path) {
 const screens = readdirSync(here('page/screens')).filter((name) => name.endsWith('.js')).sort();
 const order = ['log', 'device', 'calibrate', 'grades', 'instruments', 'bench', 'tour'];
 screens.sort((a, b) => order.indexOf(a.slice(0, -3)) - order.indexOf(b.slice(0, -3)));
-const reports = ['elements', 'axes', 'panel', 'overlay', 'figures'].map((name) => text(`../src/report/page/page_${name}.js`));
-const script = [...reports, text('page/elements.js'), text('page/engine.js'),
-  ...['slider', 'strip_chart', 'schematic', 'instrument_layout',
-    'bench_parts', 'bench_target', 'bench_noise', 'bench_heading', 'bench_grades'].map((name) => text(`page/${name}.js`)), 'const screens = {};',
-  ...screens.map((name) => text('page/screens/' + name)),
-  ...['subjects', 'equation', 'answer', 'figure'].map((name) => text(`page/tour/${name}.js`)), text('page/app.js'), 'begin();'].map(lean).join('\n');
+// Scripts that others use when they begin come first; those of the worker are apart.
+const first = ['elements.js', 'engine.js'], apart = ['wasi.js', 'live.js', 'unpack.js', 'worker.js', 'app.js'];
+const inFolder = (folder) => readdirSync(here('page/' + folder)).filter((name) => name.endsWith('.js')).sort().map((name) => folder + name);
+const shared = inFolder('').filter((name) => !first.includes(name) && !apart.includes(name));
+const script = [readFileSync(wasm.replace(/[^/]*$/, 'page_script.js'), 'utf8'), ...first.map((name) => text('page/' + name)),
+  ...shared.map((name) => text('page/' + name)), 'const screens = {};',
+  ...screens.map((name) => text('page/screens/' + name)), ...inFolder('tour/').map((name) => text('page/' + name)), text('page/app.js'), 'begin();'].map(lean).join('\n');
 const worker = [text('page/wasi.js'), text('page/live.js'), text('page/unpack.js'), text('page/worker.js')].map(lean).join('\n');
 const hash = createHash('sha256').update(script).digest('base64');
 const policy = [`default-src 'none'`, `script-src 'sha256-${hash}' 'wasm-unsafe-eval'`, `worker-src blob:`,
   `style-src 'unsafe-inline'`, `img-src data: blob:`, `connect-src 'none'`, `base-uri 'none'`, `form-action 'none'`].join('; ');
-const parts = { policy, style: text('page/style.css'), worker, script,
+const escape = (content) => content.replace(/&/g, '&amp;').replace(/</g, '&lt;');
+const parts = { policy, style: text('../src/report/page/page_style.css') + text('page/style.css'), licences: escape(text('page/licences.txt')), worker, script,
   module: packed(wasm).toString('base64') };
 const page = text('page/index.html').replace(/\{\{(\w+)\}\}/g, (all, name) => parts[name]);
 if (/<\/script/i.test(script + worker)) throw new Error('a script holds the end of a script');

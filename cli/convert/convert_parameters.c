@@ -158,6 +158,7 @@ int convert_show(const parameter_options *o, imk_parameter_format from, const ch
     show_end_of(out, (imk_parameter_format)o->to, result);
     for (int k = 0; notes && k < 2; k++)
         tell(&notes[k]);
+    show_judge(result, "%s holds all of %s", out, in);
     imk_result_end(result);
     return show_end(result, &(show_options){.json = o->json, .quiet = true}, EXIT_DONE);
 }

@@ -180,8 +180,11 @@ static int show_log(const convert_options *o, const char *in, const imk_log_sink
     imk_result_object(result, "inputs");
     convert_show_file(in, "log", result);
     imk_result_end(result);
-    imk_show_written("result", written->path, written->rows, written->column_count, written->column,
-                     result);
+    imk_result_object(result, "result");
+    show_judge(result, "%s has %llu rows of %zu columns", written->path,
+               (unsigned long long)written->rows, written->column_count);
+    imk_show_file(written->path, written->rows, written->column_count, written->column, result);
+    imk_result_end(result);
     return show_end(result, &(show_options){.json = o->parameters.json, .quiet = true}, EXIT_DONE);
 }
 

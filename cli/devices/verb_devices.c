@@ -208,6 +208,49 @@ static void show_build_lines(const imk_device_build *b, imk_result *result)
     imk_result_line(result, "# size, mass and supply from: %s", b->source);
 }
 
+/* As what an entry can be used; a comment, too. */
+static void judge_entry(const subject *s, const imk_model *model, imk_result *result)
+{
+    imk_unstated unstated = {.count = 0};
+    char sentence[300] = "Usable: it states every term that drift and grade look for.",
+         more[40] = "";
+    if (s->device)
+        imk_model_unstated(model, &unstated);
+    if (unstated.count > 1)
+        (void)snprintf(more, sizeof more, " and %zu more term%s", unstated.count - 1,
+                       unstated.count == 2 ? "" : "s");
+    if (!s->device)
+        (void)snprintf(sentence, sizeof sentence,
+                       "Not usable as a model: only what a count is is known of it.");
+    else if (unstated.count > 0)
+        (void)snprintf(sentence, sizeof sentence,
+                       "Usable with care: it does not state %s%s, so that figures of drift and "
+                       "grade may be lower bounds.",
+                       unstated.term[0].text, more);
+    imk_result_usability(result,
+                         !s->device           ? IMK_NOT_USABLE
+                         : unstated.count > 0 ? IMK_USABLE_WITH_CARE
+                                              : IMK_USABLE,
+                         sentence);
+    imk_result_line(result, "# %s", sentence);
+}
+
+static void judge_list(const subjects *chosen, imk_result *result)
+{
+    size_t models = 0;
+    for (size_t i = 0; i < chosen->count; i++)
+        models += chosen->of[i].device != NULL;
+    if (models == chosen->count)
+        imk_result_judge(result, IMK_USABLE,
+                         "Usable: all %zu entries have a model of their errors.", models);
+    else
+        imk_result_judge(result, models > 0 ? IMK_USABLE_WITH_CARE : IMK_NOT_USABLE,
+                         "%s: %zu of %zu entries have a model of their errors; of the others only "
+                         "what a count is is known.",
+                         models > 0 ? "Usable with care" : "Not usable as models", models,
+                         chosen->count);
+}
+
 static void show_entry(const subject *s, const imk_model *model, imk_result *result)
 {
     char *text = NULL;
@@ -262,6 +305,12 @@ static void show(const subjects *chosen, const char *name, imk_model *model, imk
         imk_result_text(result, "name", one ? chosen->of[0].name : name);
     imk_result_end(result);
     imk_result_object(result, "result");
+    if (one && chosen->of[0].device)
+        imk_device_model(chosen->of[0].device, model);
+    if (one)
+        judge_entry(&chosen->of[0], model, result);
+    else
+        judge_list(chosen, result);
     imk_table *table = one ? NULL : begin_table(result);
     show_some(chosen, true, table, model, result);
     show_some(chosen, false, table, model, result);

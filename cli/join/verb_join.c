@@ -162,6 +162,29 @@ static const char *code_of(imk_join_note_kind kind)
     return codes[kind];
 }
 
+/* A unit without one of the sensors cannot navigate; a note is something that the unit lacks. */
+static void judge(const parts *p, const imk_model *unit, const imk_joined *joined,
+                  imk_result *result)
+{
+    char text[300], more[40] = "";
+    const int gyros = unit->gyro.present ? unit->gyro.axis_count : 0,
+              accels = unit->accel.present ? unit->accel.axis_count : 0;
+    if (joined->note_count > 0)
+        note_text(p, &joined->note[0], text, sizeof text);
+    if (joined->note_count > 1)
+        (void)snprintf(more, sizeof more, "; and %zu more note%s", joined->note_count - 1,
+                       joined->note_count == 2 ? "" : "s");
+    if (gyros < 3 || accels < 3)
+        imk_result_judge(result, IMK_NOT_USABLE,
+                         "Not usable for navigation: the unit has %d gyros and %d accelerometers.",
+                         gyros, accels);
+    else if (joined->note_count > 0)
+        imk_result_judge(result, IMK_USABLE_WITH_CARE, "Usable with care: %s%s.", text, more);
+    else
+        imk_result_judge(result, IMK_USABLE, "Usable: the unit has %d gyros and %d accelerometers.",
+                         gyros, accels);
+}
+
 static void show_data(const parts *p, const join_options *o, const imk_model *unit,
                       const imk_joined *joined, imk_result *result)
 {
@@ -173,6 +196,7 @@ static void show_data(const parts *p, const join_options *o, const imk_model *un
     imk_result_end(result);
     imk_result_end(result);
     imk_result_object(result, "result");
+    judge(p, unit, joined, result);
     imk_result_text(result, "output", o->output);
     imk_result_text(result, "name", unit->name);
     for (int kind = 0; kind < IMK_KINDS; kind++) {

@@ -61,6 +61,22 @@ static void describe_missing(const imk_campaign_merge_report *r, growing_list *t
                  (unsigned long long)r->shard_count, r->shards, r->shards);
 }
 
+/* Of what is not written only the data speaks: the error is told. */
+static void judge(const char *output, const imk_campaign_merge_report *r, imk_result *result)
+{
+    const unsigned long long present = r->present, all = r->run_count;
+    if (!output)
+        imk_result_usability(
+            result, IMK_NOT_USABLE,
+            imk_result_key(result, "Not usable: %llu of %llu runs are there.", present, all));
+    else if (r->missing[0])
+        imk_result_judge(result, IMK_USABLE_WITH_CARE,
+                         "Usable with care: runs %s of %llu are missing, %llu are there.",
+                         r->missing, all, present);
+    else
+        imk_result_judge(result, IMK_USABLE, "Usable: all %llu runs are there.", all);
+}
+
 /* @param output  NULL: nothing was written */
 static void show_data(const char *output, size_t count, const char *const *paths,
                       const imk_campaign_merge_report *r, imk_result *result)
@@ -72,6 +88,7 @@ static void show_data(const char *output, size_t count, const char *const *paths
     imk_result_end(result);
     imk_result_end(result);
     imk_result_object(result, "result");
+    judge(output, r, result);
     imk_result_text(result, "output", output);
     imk_result_count(result, "run_count", (long long)r->run_count);
     imk_result_count(result, "runs", (long long)r->present);

@@ -288,9 +288,10 @@ static int take_option(const verb *v, int count, char **words, int *index, void 
     if (o->kind == OPTION_FLAG && value)
         return command_misused("--%s takes no value", o->name);
     if (o->kind != OPTION_FLAG && !value) {
-        if (*index + 1 >= count)
+        const bool follows = *index + 1 < count && !(o->alone && words[*index + 1][0] == '-');
+        if (!follows && !o->alone)
             return command_misused("--%s needs a value: --%s %s", o->name, o->name, o->value);
-        value = words[++*index];
+        value = follows ? words[++*index] : o->alone;
     }
     return set_value(o, group, value, settings);
 }

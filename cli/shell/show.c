@@ -6,6 +6,7 @@
 #include "imukit/figure_file.h"
 #include "imukit/model_file.h"
 
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,6 +45,27 @@ void show_model(imk_result *result, const char *title, const imk_model *model)
         imk_result_line(result, "%s", reason);
     }
     free(text);
+}
+
+void show_judge(imk_result *result, const char *format, ...)
+{
+    const size_t warnings = told_warnings();
+    char good[200], more[60] = "";
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(good, sizeof good, format, arguments);
+    va_end(arguments);
+    const told *first = NULL;
+    for (size_t i = told_count(); i-- > 0;)
+        first = told_get(i)->level == IMK_FINDING_WARNING ? told_get(i) : first;
+    if (warnings > 1)
+        snprintf(more, sizeof more, "; and %zu more warning%s", warnings - 1,
+                 warnings == 2 ? "" : "s");
+    if (first)
+        imk_result_judge(result, IMK_USABLE_WITH_CARE, "Usable with care: %s%s.", first->message,
+                         more);
+    else
+        imk_result_judge(result, IMK_USABLE, "Usable: %s.", good);
 }
 
 /* @return -1 or the exit code */

@@ -21,6 +21,8 @@ imk_result *show_begin(const char *name);
 void show_origin(imk_result *result);
 /* The warnings up to now, as findings. */
 void show_warnings(imk_result *result);
+/* Judge what was written by the warnings up to now: "Usable: …", or with care, because of them. */
+void show_judge(imk_result *result, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Write the page, print JSON or text, draw, and free the result.
  * @return the exit code: `code`, or another one when something could not be written */
 int show_end(imk_result *result, const show_options *options, int code);

@@ -164,6 +164,9 @@ static int write_logs(const simulate_options *o, const imk_model *model, scene *
     else
         code = simulate_log(o, model, s, executor, o->output ? o->output : "-", "simulating");
     imk_result_end(s->result);
+    show_judge(s->result, "%llu log%s of %llu samples with every error of the model",
+               (unsigned long long)(o->runs.given ? o->runs.value : 1),
+               o->runs.given && o->runs.value > 1 ? "s" : "", (unsigned long long)s->settings.rows);
     imk_result_end(s->result);
     return code;
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file figure_file.h
- *  Figures and animations as files and on the terminal. Part of libimukit-io. */
+ *  Figures, animations and schematics as files and on the terminal. Part of libimukit-io. */
 #ifndef IMUKIT_FIGURE_FILE_H
 #define IMUKIT_FIGURE_FILE_H
 
 #include "imukit/report.h"
+#include "imukit/schematic.h"
 #include "imukit/status.h"
 
 #include <stdbool.h>
@@ -27,6 +28,12 @@ IMK_API imk_status imk_figure_write(const imk_figure *figure, const char *path, 
  *  @return errors of imk_animation_svg(); IMK_ERROR_FORMAT (another ending), _OPEN, _WRITE */
 IMK_API imk_status imk_animation_write(const imk_animation *animation, const char *path,
                                        imk_error *error);
+
+/** Write the schematic of an instrument in motion (imk_schematic_animated()) to a file whose name
+ *  ends in .svg, or to standard output ("-").
+ *  @return errors of imk_schematic_animated(); IMK_ERROR_FORMAT (another ending), _OPEN, _WRITE */
+IMK_API imk_status imk_schematic_write(const imk_physics_log_settings *settings, double seconds,
+                                       size_t frames, const char *path, imk_error *error);
 
 IMK_END_C
 #endif

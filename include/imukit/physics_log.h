@@ -75,8 +75,11 @@ typedef struct imk_physics_log {
     size_t points;
     double *time; /**< of each point [s]; this and the next two hold IMK_PHYSICS_CURVE_POINTS + 1
                      values */
-    double *curve[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< in imk_physics_output_unit() */
-    double *input;                             /**< in the unit of output 0 */
+    double *curve[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< mean of the samples of each point, in
+                                                  imk_physics_output_unit() */
+    /** Least and greatest of these samples. */
+    double *least[IMK_INSTRUMENT_OUTPUTS_MAX], *greatest[IMK_INSTRUMENT_OUTPUTS_MAX];
+    double *input; /**< in the unit of output 0 */
     imk_findings findings;
     imk_allocator allocator; /**< allocator of this structure */
 } imk_physics_log;

@@ -42,7 +42,7 @@ typedef struct imk_region {
     bool dashed; /**< outline of dashes, for limits that are not certain */
 } imk_region;
 
-/** Where the key of a panel stands. */
+/** Where the key of a panel stands. A key that would hide something in each corner goes below. */
 typedef enum imk_key_place {
     IMK_KEY_UPPER = 0, /**< in the upper right corner, or in another corner where it hides much
                           less; if the figure has one panel, beside the axes */
@@ -66,6 +66,7 @@ typedef struct imk_panel {
         *note; /**< lines below the label of the x axis, separated by line feeds; NULL: none */
     bool allan_deviation; /**< of a rate against averaging time: a page can lay the deviations of
                              other sensors over it */
+    double y_low, y_high; /**< what the y axis spans, if y_low < y_high; then x spans lines, too */
 } imk_panel;
 
 /** Panels on a grid, row by row. Panels are larger if regions have labels. The title is drawn only

@@ -73,6 +73,7 @@ typedef struct imk_schematic_part {
     /** Moves with another part, of this id: the gain is `reach` times its gain; NULL: by itself. */
     const char *with;
     double base;
+    bool held;    /**< a loop of the default design holds it: it may rest in the animation */
     double still; /**< in the still drawing the signal is this part of `full` */
 } imk_schematic_part;
 

@@ -62,9 +62,11 @@ IMK_API void imk_show_navigate_log(const imk_navigate_log *n, const char *name, 
 IMK_API void imk_show_simulate_inputs(const imk_simulate_log_settings *settings, const char *model,
                                       const char *motion, const char *temperature, uint64_t runs,
                                       imk_result *result);
-/** Show a log that was written, as data only.
- *  @param key      NULL in an array
+/** Show a log that was written, as members of the object of the data that is open.
  *  @param columns  `column_count` of them, with the units of the file */
+IMK_API void imk_show_file(const char *file, uint64_t rows, size_t column_count,
+                           const imk_log_column *columns, imk_result *result);
+/** The same as an object of its own. @param key  NULL in an array */
 IMK_API void imk_show_written(const char *key, const char *file, uint64_t rows, size_t column_count,
                               const imk_log_column *columns, imk_result *result);
 /** Show the terms taken out, and the counts of the run. @param model  name of the model */

@@ -37,7 +37,7 @@ static double variance_of(const imk_triad *triad, int axis, double time)
     return sum;
 }
 
-static double deviation_of(const imk_triad *triad, double time)
+double imki_noise_deviation(const imk_triad *triad, double time)
 {
     double most = 0;
     for (int axis = 0; axis < triad->axis_count; axis++)
@@ -55,11 +55,11 @@ static void put_number(imki_text *out, int index, double value)
 /* Nothing for a sensor without noise, or without figures. */
 static void put_triad(imki_text *out, const char *key, const imk_triad *triad)
 {
-    if (!triad->present || !(deviation_of(triad, 1) > 0))
+    if (!triad->present || !(imki_noise_deviation(triad, 1) > 0))
         return;
     imki_text_add(out, ",\"%s\":[", key);
     for (int i = 0; i < TIMES; i++)
-        put_number(out, i, deviation_of(triad, time_of(i)));
+        put_number(out, i, imki_noise_deviation(triad, time_of(i)));
     imki_text_put(out, "]");
 }
 

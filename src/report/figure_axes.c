@@ -58,12 +58,14 @@ static bool spans_axes(const imk_curve *curve)
            imki_curve_is_filled(curve);
 }
 
-/* Spans of a panel's points, bands and regions; of its lines when it has nothing else. */
+/* Spans of a panel's points, bands and regions; of its lines when it has nothing else, or the span
+ * upwards is given. */
 static void panel_spans(const imk_panel *panel, span *x, span *y)
 {
-    bool lines_only = panel->region_count == 0;
+    bool lines = panel->region_count == 0;
     for (size_t c = 0; c < panel->curve_count; c++)
-        lines_only = lines_only && !spans_axes(&panel->curves[c]);
+        lines = lines && !spans_axes(&panel->curves[c]);
+    lines = lines || panel->y_low < panel->y_high;
     *x = *y = (span){(double)INFINITY, -(double)INFINITY};
     for (size_t r = 0; r < panel->region_count; r++) {
         const imk_region *region = &panel->regions[r];
@@ -74,7 +76,7 @@ static void panel_spans(const imk_panel *panel, span *x, span *y)
     }
     for (size_t c = 0; c < panel->curve_count; c++) {
         const imk_curve *curve = &panel->curves[c];
-        if (!lines_only && !spans_axes(curve))
+        if (!lines && !spans_axes(curve))
             continue;
         for (size_t i = 0; i < curve->count; i++) {
             if (!imki_drawable(curve->x[i], panel->x_logarithmic))
@@ -126,6 +128,10 @@ void imki_panel_axes(const imk_panel *panel, imki_axis *x, imki_axis *y)
     panel_spans(panel, &across, &along);
     *x = axis_make(across, panel->x_logarithmic);
     *y = axis_make(along, panel->y_logarithmic);
+    if (panel->y_low < panel->y_high) {
+        y->low = panel->y_logarithmic ? log10(panel->y_low) : panel->y_low;
+        y->high = panel->y_logarithmic ? log10(panel->y_high) : panel->y_high;
+    }
 }
 
 double imki_axis_place(const imki_axis *axis, double value)

@@ -4,6 +4,7 @@
 #define IMUKI_PAGE_INTERNAL_H
 
 #include "growing_text_internal.h"
+#include "imukit/model.h"
 
 #include "imukit/report.h"
 
@@ -36,6 +37,8 @@ void imki_page_table(imki_page *page, size_t rows, size_t columns, unsigned righ
 void imki_page_figure(imki_page *page, const imk_figure *figure, const char *caption);
 /* An animation, drawn into the page. */
 void imki_page_animation(imki_page *page, const imk_animation *animation, const char *caption);
+/* A drawing made here, an SVG text; NULL: none, as memory was exhausted. */
+void imki_page_drawing(imki_page *page, const char *svg, const char *caption);
 /* Begin a new sheet on paper and in a PDF; no effect on the screen. */
 void imki_page_break(imki_page *page);
 /* Preformatted text, such as a model file. */
@@ -48,5 +51,8 @@ imk_status imki_page_take(imki_page *page, char **text, size_t *size, imk_error 
 
 /* The Allan deviations of all sensors of the catalogue [rad/s, m/s^2], as JSON. */
 void imki_catalogue_data(imki_text *out);
+/* Allan deviation of all noise terms of a triad together, on its worst axis [rad/s, m/s^2], without
+ * what rounded readings add. @param time  averaging time [s] */
+double imki_noise_deviation(const imk_triad *triad, double time);
 
 #endif

@@ -33,7 +33,8 @@ static void shards_and_threads_do_not_matter(void **state)
     assert_int_equal(run(DRIFT "-o five.h5 --threads 5"), 0);
     assert_int_equal(run("cmp one.h5 five.h5"), 0);
     assert_int_equal(run("$I merge s2.h5 s3.h5 s1.h5 -o all.h5"), 0);
-    assert_string_equal(out, "all.h5: 100 of 100 runs from 3 of 3 files\n");
+    assert_string_equal(
+        out, "Usable: all 100 runs are there.\n\nall.h5: 100 of 100 runs from 3 of 3 files\n");
     assert_string_equal(err, "");
     assert_int_equal(run("cmp one.h5 all.h5"), 0);
     assert_int_equal(run("$I merge s2.h5 s3.h5 s1.h5 -o all.csv.gz && " DRIFT "-o one.csv.gz"), 0);

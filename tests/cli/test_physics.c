@@ -658,9 +658,27 @@ static void test_design_for_a_model(void **state)
     sweep();
 }
 
+/* The first samples, in which the loop catches the rotor, would make a flat line of the others:
+ * they are told beside the figure. A run at rest has none of that kind. With more samples than
+ * points, the band holds them. */
+static void test_points_beyond_the_axis(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I physics tuned_gyro --rate '10 deg/s' -d 10s --plot t.svg && grep -o "
+                         "'[0-9]* of 1000 points are beyond\\|from 0.01 to 0.02 s"
+                         "' t.svg"),
+                     0);
+    check_contains(out, "2 of 1000 points are beyond\nfrom 0.01 to 0.02 s\n", "figure");
+    assert_int_equal(
+        run("$I physics rate_gyro -d 10s --plot r.svg && ! grep 'beyond\\|0\\.18' r.svg"), 0);
+    assert_int_equal(run("$I physics rate_gyro -d 100s --plot r.svg && grep -q '\"0\\.18' r.svg"),
+                     0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_points_beyond_the_axis),
         cmocka_unit_test(test_list),
         cmocka_unit_test(test_every_instrument),
         cmocka_unit_test(test_log),

@@ -301,7 +301,7 @@ static void test_models(void **state)
     assert_int_equal(run("$I grade navigation"), 0);
     check_contains(out, "navigation: navigation\n", "grade");
     check_contains(out, "\n->  navigation ", "grade");
-    assert_int_equal(run("$I grade AHRS | head -2"), 0);
+    assert_int_equal(run("$I grade AHRS | head -4"), 0);
     check_contains(out, "Gyro: AHRS; remaining bias ", "grade");
     check_message("$I grade navigatoin", 1,
                   "imukit grade: error: model: \"navigatoin\" is not a known name; did you mean "
@@ -325,7 +325,7 @@ static void test_models(void **state)
 static void test_devices(void **state)
 {
     (void)state;
-    assert_int_equal(run("$I devices | head -2"), 0);
+    assert_int_equal(run("$I devices | head -4"), 0);
     check_contains(out, "gyro N [deg/sqrt(h)]", "devices");
     check_contains(out, "\nstrategic ", "devices");
     assert_int_equal(run("$I devices ADIS16488 >d.yaml && $I grade d.yaml"), 0);
@@ -341,7 +341,7 @@ static void test_devices(void **state)
 static void test_devices_by_part_of_name(void **state)
 {
     (void)state;
-    assert_int_equal(run("$I devices bmi | cut -d' ' -f1 | head -4"), 0);
+    assert_int_equal(run("$I devices bmi | cut -d' ' -f1 | sed -n 3,6p"), 0);
     assert_string_equal(out, "name\nBMI088\nBMI160\nBMI270\n");
     assert_int_equal(run("$I devices 'Mti 630'"), 0);
     check_contains(out, "# Xsens MTi-630 (industrial MEMS)\n", "one hit");

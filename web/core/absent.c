@@ -22,6 +22,7 @@
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <unistd.h>
+#include <zlib.h>
 #include <zstd.h>
 
 /* ---- threads: one ------------------------------------------------------------------------- */
@@ -163,7 +164,33 @@ static imk_status refuse(imk_log_reader *reader, imk_error *error)
 const imki_log_codec imki_log_hdf5 = {.open = refuse};
 const imki_log_codec imki_log_rosbag2 = {.open = refuse};
 
-/* Zstandard is read, not written. */
+/* Compressed files are read, not written. */
+int deflateInit2_(z_streamp stream, int level, int method, int window, int memory, int strategy,
+                  const char *version, int size)
+{
+    (void)stream, (void)level, (void)method, (void)window, (void)memory, (void)strategy;
+    (void)version, (void)size;
+    return Z_VERSION_ERROR;
+}
+
+int deflateSetHeader(z_streamp stream, gz_headerp header)
+{
+    (void)stream, (void)header;
+    return Z_STREAM_ERROR;
+}
+
+int deflate(z_streamp stream, int flush)
+{
+    (void)stream, (void)flush;
+    return Z_STREAM_ERROR;
+}
+
+int deflateEnd(z_streamp stream)
+{
+    (void)stream;
+    return Z_STREAM_ERROR;
+}
+
 ZSTD_CCtx *ZSTD_createCCtx(void)
 {
     return NULL;

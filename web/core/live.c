@@ -86,8 +86,7 @@ static imk_status start(const imk_design_file *file, imk_physics_settings *setti
     settings->duration = live.pace;
     settings->turning = fabs(rate[0]) + fabs(rate[1]) + fabs(rate[2]);
     settings->steps_max = steps_per_second;
-    imk_status status =
-        imk_instrument_init(file->instrument, file->design, settings, state, error);
+    imk_status status = imk_instrument_init(file->instrument, file->design, settings, state, error);
     if (status == IMK_ERROR_RANGE && strcmp(error->field, "rate") == 0 &&
         error->limit < settings->rate) {
         settings->rate = error->limit; /* as many as it can */
@@ -213,9 +212,9 @@ static imk_status read_vector(const char *text, const char *unit, double *values
 {
     double read[3] = {0}, sigmas[3];
     size_t count = 0;
-    const imk_status status = imk_quantity_parse(text, text + strlen(text),
-                                                 imk_unit_of(unit).dimension, 3, read, sigmas,
-                                                 &count, NULL, error);
+    const imk_status status =
+        imk_quantity_parse(text, text + strlen(text), imk_unit_of(unit).dimension, 3, read, sigmas,
+                           &count, NULL, error);
     if (status == IMK_OK && count == 2)
         return imk_error_set(error, IMK_ERROR_SYNTAX, "", "two numbers", "one about x, or three");
     if (status == IMK_OK)

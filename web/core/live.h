@@ -14,12 +14,12 @@ typedef struct live_instrument {
     void *state;
     imk_physics_settings physics; /* its rate is that of the rows */
     imk_exposure exposure;
-    double asked_rate;            /* rate of the rows as the pace asks for it [Hz] */
-    double pace;   /* simulated seconds for each second on the screen */
-    double owed;   /* part of a row that is due */
-    double screen; /* time on the screen since the beginning [s] */
-    double turned; /* integral of the input along x over the run [rad], [m/s] */
-    uint64_t row;  /* rows of the run so far */
+    double asked_rate; /* rate of the rows as the pace asks for it [Hz] */
+    double pace;       /* simulated seconds for each second on the screen */
+    double owed;       /* part of a row that is due */
+    double screen;     /* time on the screen since the beginning [s] */
+    double turned;     /* integral of the input along x over the run [rad], [m/s] */
+    uint64_t row;      /* rows of the run so far */
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX];
     imki_column_format column[LIVE_COLUMNS]; /* outputs, then signals */
     double rows[LIVE_ROWS * (1 + LIVE_COLUMNS)];

@@ -20,8 +20,7 @@
     VERB(grade)                                                                                    \
     VERB(convert)                                                                                  \
     VERB(physics)                                                                                  \
-    VERB(drift)                                                                                    \
-    VERB(navigate)
+    VERB(drift)
 
 #ifndef PATH_MAX
 #define PATH_MAX 4096

@@ -16,15 +16,17 @@ class Engine {
     this.next = 1;
   }
 
-  /** Begin the worker; it has the module when this is done, whoever began it. */
-  async start() {
-    if (!this.worker) {
-      const worker = (this.worker = new Worker(workerAddress()));
-      worker.onmessage = ({ data }) => this.answer(data);
-      worker.onerror = (event) => this.fail(event.message || 'the worker has stopped');
-      this.ready = compiledModule().then((module) => worker.postMessage({ module }));
-    }
-    await this.ready;
+  /** The worker, begun once; whoever asks while it begins waits for the same one. */
+  start() {
+    return (this.begun ||= this.begin());
+  }
+
+  async begin() {
+    const worker = (this.worker = new Worker(workerAddress()));
+    worker.onmessage = ({ data }) => this.answer(data);
+    worker.onerror = (event) => this.fail(event.message || 'the worker has stopped');
+    worker.postMessage({ module: await compiledModule() });
+    return worker;
   }
 
   /** Do a verb.
@@ -37,13 +39,14 @@ class Engine {
 
   async ask(message, progress) {
     const id = this.next++;
-    const answer = new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject, progress }));
-    await this.start();
-    if (this.worker) this.worker.postMessage({ id, ...message });
+    const answer = new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject, progress, isVerb: Boolean(message.words) }));
+    const begun = this.start();
+    begun.then((worker) => this.waiting.has(id) && worker.postMessage({ id, ...message }),
+      (reason) => this.fail(reason));
     return answer;
   }
 
-  answer({ id, progress, failed, ...result }) {
+  answer({ id, progress, failed, kind, ...result }) {
     const asked = this.waiting.get(id);
     if (!asked) return;
     if (progress !== undefined) {
@@ -51,15 +54,25 @@ class Engine {
       return;
     }
     this.waiting.delete(id);
-    if (failed) asked.reject(new Error(failed));
+    if (failed && asked.isVerb) this.failVerb(asked, kind, failed);
+    else if (failed) asked.reject(new Error(failed));
     else asked.resolve(result);
+  }
+
+  /** A verb has not come to its end. Nothing of it is left in the worker, but a new one is safe. */
+  failVerb(asked, kind, failed) {
+    const known = { NotReadableError: 'the file cannot be read any more: it was changed or moved since it was chosen; choose it again',
+      NotFoundError: 'the file is not there any more; choose it again',
+      RangeError: `the memory of this page is not enough (${failed}); the command at a terminal has more` };
+    asked.reject(new Error(known[kind] || `the computation has stopped inside, which is a fault of imukit: ${failed}`));
+    if (this.waiting.size === 0) this.fail('stopped');
   }
 
   fail(reason) {
     const all = [...this.waiting.values()];
     this.waiting.clear();
     if (this.worker) this.worker.terminate();
-    this.worker = null;
+    this.worker = this.begun = null;
     for (const asked of all) asked.reject(reason instanceof Error ? reason : new Error(reason));
   }
 

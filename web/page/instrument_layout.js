@@ -6,12 +6,12 @@
 function layOutInstrument(view, answer) {
   const { about } = answer;
   view.drawing = element('div', {});
-  view.charts = [makeChart('Output', about.outputs, 0, 0), makeChart('Signal', about.signals, about.outputs.length, about.first_signal)];
+  view.charts = [makeChart('Output', about.outputs, 0, 0, about.rate), makeChart('Signal', about.signals, about.outputs.length, about.first_signal, about.rate)];
   view.quantities = element('div', {});
   view.terminal = element('pre', { tabindex: 0 });
   view.root.append(
     element('h1', {}, about.title[0].toUpperCase() + about.title.slice(1)),
-    about.description ? element('p', {}, about.description) : null,
+    element('p', {}, about.description || ''),
     element('div', { class: 'instrument' },
       element('section', { 'aria-label': 'Drawing and controls' }, view.drawing, makeRunControls(view), makeInputs(view), makeDesign(view)),
       element('section', { 'aria-label': 'Curves and quantities' }, view.charts.map(({ root }) => root), element('h2', {}, 'Quantities'), view.quantities)),
@@ -31,12 +31,12 @@ function showSchematic(view, { schematic, about }) {
 }
 
 /** A chart with a choice of what it shows. */
-function makeChart(label, signals, first, chosen) {
+function makeChart(label, signals, first, chosen, rate) {
   const id = 'chart' + label;
   const nice = (name) => name.replace(/_/g, ' ');
   const now = element('output', { class: 'number' }), unit = element('span', {});
   const place = element('div', {});
-  const made = { now, column: () => first + Number(select.value), input: () => first === 0 && Number(select.value) === 0 };
+  const made = { rate, now, column: () => first + Number(select.value), input: () => first === 0 && Number(select.value) === 0 };
   const select = element('select', { id, onchange: renew },
     signals.map(({ name, help }, i) => element('option', { value: i, title: help, selected: i === chosen }, nice(name))));
   function renew() {
@@ -45,8 +45,14 @@ function makeChart(label, signals, first, chosen) {
     made.chart = new StripChart({ label: `${nice(signal.name)} against time on the screen`, unit: signal.unit, names: made.input() ? ['output', 'input'] : ['signal'] });
     place.replaceChildren(made.chart.root);
     unit.textContent = signal.unit === '1' ? '' : signal.unit;
-    made.help.textContent = signal.help + (made.input() ? '; dashed: the true input' : '');
+    made.sample();
   }
+  // What one sample is, which at a slow pace is much less than what a reading needs.
+  made.sample = (rate = made.rate) => {
+    made.rate = rate;
+    const short = rate > 2000 ? ' So short a time shows single counts and pulses: nearer to real time they are means.' : '';
+    made.help.textContent = signals[Number(select.value)].help + (made.input() ? `; dashed: the true input. A sample lasts ${timeText(1 / rate)}.${short}` : '');
+  };
   made.help = element('p', { class: 'weak' });
   made.root = element('figure', {}, element('figcaption', {}, element('label', { for: id }, label + ' '), select, ' ', now, ' ', unit), place, made.help);
   renew();
@@ -164,11 +170,11 @@ function makeField({ label, text, help, change }) {
 function showQuantities(view) {
   const { about } = view;
   const row = ({ name, equation, unit }, cell) =>
-    element('tr', {}, element('th', { scope: 'row' }, name, equation ? element('code', {}, equation) : null), element('td', {}, cell, ' ', unit && unit !== '1' ? unit : ''));
+    element('tr', {}, element('th', { scope: 'row' }, name, equation ? element('code', {}, equation) : null), element('td', {}, cell, '\u00a0', unit && unit !== '1' ? unit : ''));
   view.values = about.quantities.map(() => element('output', { class: 'number' }));
   const open = view.quantities.querySelector('details');
   const derived = element('table', {}, element('tbody', {}, about.derived.map((one) =>
-    row(one, one.value === null ? `– (${one.absent || 'none'})` : shownNumber(one.value)))));
+    row(one, one.value === null ? element('span', { class: 'absent' }, `– (${one.absent || 'none'})`) : shownNumber(one.value)))));
   view.quantities.replaceChildren(
     ...(about.quantities.length
       ? [element('table', {}, element('tbody', {}, about.quantities.map((one, i) => row(one, view.values[i])))),

@@ -76,7 +76,10 @@ async function doLive({ id, live: what, values }) {
     system.memory = exports.memory;
     live.instance = new LiveInstrument(exports);
   }
-  const answer = live.instance.do(what, values);
+  const instance = live.instance;
+  live.instance = null; // should it fail, the next has a new one
+  const answer = instance.do(what, values);
+  live.instance = instance;
   postMessage({ id, ...answer }, answer.rows ? [answer.rows.buffer, answer.moment.buffer] : []);
 }
 

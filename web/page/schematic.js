@@ -4,12 +4,13 @@
 
 'use strict';
 
-/** A drawing with styles and names of its own, and its moving parts in the order given. */
+/** A drawing with styles and names of its own, and its moving parts in the order given. Its pace is
+ *  left out, which the page lets choose. */
 function importSchematic(text, about) {
   const host = element('div', { class: 'schematic' });
   const shadow = host.attachShadow({ mode: 'open' });
   const svg = document.importNode(new DOMParser().parseFromString(text, 'image/svg+xml').documentElement, true);
-  shadow.append(element('style', {}, 'svg { display: block; width: 100%; height: auto; }'), svg);
+  shadow.append(element('style', {}, 'svg { display: block; width: 100%; height: auto; } .pace { display: none; }'), svg);
   const parts = about.parts.map(({ id, move, origin }) => ({ group: svg.getElementById(id), move, origin }));
   return { host, parts };
 }

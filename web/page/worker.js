@@ -6,7 +6,7 @@
 //               { module }                                   once
 //               { id, words, files, environment }            a verb; files: [[name, Blob or bytes]]
 //               { id, live: NAME_OF_FUNCTION, values: […] }  see live.js
-// Messages out: { id, progress: text } and then { id, code, out, err, files } or { id, failed }
+// Messages out: { id, progress: text } and then { id, code, out, err, files } or { id, failed, kind }
 
 'use strict';
 
@@ -41,6 +41,6 @@ onmessage = async ({ data }) => {
     else if (data.live) await doLive(data);
     else await doVerb(data);
   } catch (reason) {
-    postMessage({ id: data.id, failed: String((reason && reason.message) || reason) });
+    postMessage({ id: data.id, failed: String((reason && reason.message) || reason), kind: reason && reason.name });
   }
 };

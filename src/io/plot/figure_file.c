@@ -98,3 +98,18 @@ imk_status imk_animation_write(const imk_animation *animation, const char *path,
     }
     return status;
 }
+
+imk_status imk_schematic_write(const imk_physics_log_settings *settings, double seconds,
+                               size_t frames, const char *path, imk_error *error)
+{
+    char *svg;
+    size_t size;
+    if (strcmp(path, "-") != 0 && !imk_has_ending(path, ".svg"))
+        return imk_error_set(error, IMK_ERROR_FORMAT, "schematic", path, "a name ending in .svg");
+    imk_status status = imk_schematic_animated(settings, seconds, frames, NULL, &svg, &size, error);
+    if (status == IMK_OK) {
+        status = write_file(path, svg, size, error);
+        free(svg);
+    }
+    return status;
+}

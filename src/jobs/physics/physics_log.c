@@ -147,9 +147,10 @@ static imk_status put_row(imk_physics_log *log, sheet *s, double time, const dou
 
 /* ---- the run --------------------------------------------------------------------------------- */
 
-/* Means of a group of samples, one point of the picture. */
+/* A group of samples, one point of the picture. */
 typedef struct point {
     double sum[IMK_INSTRUMENT_OUTPUTS_MAX], input, time;
+    double least[IMK_INSTRUMENT_OUTPUTS_MAX], greatest[IMK_INSTRUMENT_OUTPUTS_MAX];
     uint64_t count;
 } point;
 
@@ -158,14 +159,20 @@ static void add_to_picture(imk_physics_log *log, point *at, double time, const d
 {
     at->time += time;
     at->input += input;
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
         at->sum[i] += outputs[i];
+        at->least[i] = at->count == 0 ? outputs[i] : fmin(at->least[i], outputs[i]);
+        at->greatest[i] = at->count == 0 ? outputs[i] : fmax(at->greatest[i], outputs[i]);
+    }
     if (++at->count < log->stride || log->points > IMK_PHYSICS_CURVE_POINTS)
         return;
     log->time[log->points] = at->time / (double)at->count;
     log->input[log->points] = at->input / (double)at->count;
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
         log->curve[i][log->points] = at->sum[i] / (double)at->count;
+        log->least[i][log->points] = at->least[i];
+        log->greatest[i][log->points] = at->greatest[i];
+    }
     log->points++;
     *at = (point){.count = 0};
 }
@@ -225,6 +232,8 @@ static imk_status finish(imk_physics_log *log, imk_error *error)
         const imk_unit unit = imk_physics_output_unit(log, i);
         for (size_t k = 0; k < log->points; k++) {
             log->curve[i][k] = (log->curve[i][k] - unit.offset) / unit.scale;
+            log->least[i][k] = (log->least[i][k] - unit.offset) / unit.scale;
+            log->greatest[i][k] = (log->greatest[i][k] - unit.offset) / unit.scale;
             if (i == 0)
                 log->input[k] /= unit.scale;
         }
@@ -337,7 +346,7 @@ static imk_physics_log *create(const imk_physics_log_settings *settings,
 {
     const size_t outputs = settings->instrument->output_count, size = IMK_PHYSICS_CURVE_POINTS + 1;
     imk_physics_log *log =
-        imki_resize(allocator, NULL, sizeof *log + (outputs + 2) * size * sizeof(double));
+        imki_resize(allocator, NULL, sizeof *log + (3 * outputs + 2) * size * sizeof(double));
     if (!log)
         return NULL;
     memset(log, 0, sizeof *log);
@@ -346,9 +355,12 @@ static imk_physics_log *create(const imk_physics_log_settings *settings,
     log->samples = imk_physics_rows(settings, settings->physics.rate);
     log->stride = log->samples / IMK_PHYSICS_CURVE_POINTS + 1;
     log->time = (double *)(log + 1);
-    for (size_t i = 0; i < outputs; i++)
-        log->curve[i] = log->time + (1 + i) * size;
-    log->input = log->time + (1 + outputs) * size;
+    log->input = log->time + size;
+    for (size_t i = 0; i < outputs; i++) {
+        log->curve[i] = log->input + (1 + 3 * i) * size;
+        log->least[i] = log->curve[i] + size;
+        log->greatest[i] = log->least[i] + size;
+    }
     imk_instrument_reduce(settings->instrument, settings->design, &log->model);
     return log;
 }

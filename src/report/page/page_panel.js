@@ -110,7 +110,7 @@ const imukitPanel = (() => {
     const make = isFilled(curve) ? bandPath : isLine(curve) ? linePath
       : curve.style === 'marks' ? markPath : dotPath;
     const made = [svg('path', {class: `${curve.style} c${curve.color}`, d: make(spots)})];
-    if (!isFilled(curve) && !isLine(curve) && spots.some(spot => spot && spot.lower !== undefined))
+    if (curve.bars)
       made.unshift(svg('path', {class: `bars c${curve.color}`, d: barPath(spots)}));
     return made;
   }
@@ -118,7 +118,7 @@ const imukitPanel = (() => {
   /* A piece of the curve, for the key. */
   function sample(curve) {
     const d = isFilled(curve) ? 'M0 2h22v8h-22z' : isLine(curve) ? 'M1 6h20'
-      : curve.style === 'marks' ? 'M11 0l6 6l-6 6l-6-6z' : 'M11 6h0';
+      : curve.style === 'marks' ? 'M11 0l6 6l-6 6l-6-6z' : 'M11 6h.1';
     return svg('svg', {width: 22, height: 12, viewBox: '0 0 22 12', 'aria-hidden': true},
       svg('path', {class: `${curve.style} c${curve.color}`, d}));
   }
@@ -260,5 +260,5 @@ const imukitPanel = (() => {
       ...regionNames(panel), svg('g', {class: 'pointed'}));
   }
 
-  return {draw, svg, pointsOf, spotOf, sample, isFilled};
+  return {draw, svg, pointsOf, spotOf, boxOf, sample, isFilled};
 })();

@@ -41,8 +41,9 @@
 
 /* The schematics there are. */
 #define IMKI_SCHEMATICS(kind)                                                                      \
-    kind(free_gyro) kind(rate_gyro) kind(fibre_optic) kind(ring_laser) kind(tuning_fork)           \
-        kind(mems_accelerometer)
+    kind(free_gyro) kind(rate_gyro) kind(rate_integrating_gyro) kind(tuned_gyro)                   \
+        kind(suspended_rotor) kind(fibre_optic) kind(ring_laser) kind(tuning_fork)                 \
+            kind(shell_gyro) kind(mems_accelerometer) kind(pendulous_servo) kind(vibrating_beam)
 
 #define IMKI_SCHEMATIC_LENGTH(array) (sizeof(array) / sizeof((array)[0]))
 

@@ -31,29 +31,28 @@ static void put_piece(imki_text *out, const char *begin, const char *end)
 
 static void put_words(imki_text *out, const char *text)
 {
+    int shift = 0; /* of what was written last [px] */
     for (const char *c = text; *c;) {
         const size_t plain = strcspn(c, "_^");
+        if (plain > 0 && shift != 0)
+            imki_text_add(out, "<tspan dy=\"%d\">", -shift);
         put_piece(out, c, c + plain);
+        if (plain > 0 && shift != 0)
+            imki_text_put(out, "</tspan>");
+        shift = plain > 0 ? 0 : shift;
         c += plain;
         if (!*c)
             return;
-        const int shift = *c == '_' ? 5 : -7;
+        const int to = *c == '_' ? 5 : -7;
         const char *begin = c + 1, *end = end_of(begin);
         if (!end || end == begin)
             return;
         const bool braces = *begin == '{';
-        imki_text_add(out, "<tspan class=\"small\" dy=\"%d\">", shift);
+        imki_text_add(out, "<tspan class=\"s-small\" dy=\"%d\">", to - shift);
         put_piece(out, begin + braces, end);
-        c = end + braces;
-        /* nothing follows at the end, and an empty tspan would not move it back */
-        const size_t rest = *c == '_' || *c == '^' ? 0 : strcspn(c, "_^");
         imki_text_put(out, "</tspan>");
-        if (rest > 0) {
-            imki_text_add(out, "<tspan dy=\"%d\">", -shift);
-            put_piece(out, c, c + rest);
-            imki_text_put(out, "</tspan>");
-            c += rest;
-        }
+        c = end + braces;
+        shift = to;
     }
 }
 
@@ -77,7 +76,7 @@ void imki_draw_text(imki_drawing *d, imki_side side, double x, double y, const c
 
 void imki_draw_note(imki_drawing *d, imki_side side, double x, double y, const char *text)
 {
-    put_text(d, " class=\"note\"", side, x, y, text);
+    put_text(d, " class=\"s-note\"", side, x, y, text);
 }
 
 void imki_draw_label(imki_drawing *d, imki_side side, double x, double y, const char *text,
@@ -204,5 +203,5 @@ void imki_draw_time(imki_drawing *d)
              : pace > 1.05 ? "time sped up %s ×"
                            : "true time",
              number);
-    imki_draw_note(d, IMKI_START, 10, 390, text);
+    put_text(d, " class=\"note pace\"", IMKI_START, 10, 390, text);
 }

@@ -34,10 +34,9 @@ void imk_show_simulate_inputs(const imk_simulate_log_settings *settings, const c
     imk_result_end(result);
 }
 
-void imk_show_written(const char *key, const char *file, uint64_t rows, size_t column_count,
-                      const imk_log_column *columns, imk_result *result)
+void imk_show_file(const char *file, uint64_t rows, size_t column_count,
+                   const imk_log_column *columns, imk_result *result)
 {
-    imk_result_object(result, key);
     imk_result_text(result, "file", file);
     imk_result_count(result, "rows", (long long)rows);
     imk_result_array(result, "columns");
@@ -48,5 +47,12 @@ void imk_show_written(const char *key, const char *file, uint64_t rows, size_t c
         imk_result_end(result);
     }
     imk_result_end(result);
+}
+
+void imk_show_written(const char *key, const char *file, uint64_t rows, size_t column_count,
+                      const imk_log_column *columns, imk_result *result)
+{
+    imk_result_object(result, key);
+    imk_show_file(file, rows, column_count, columns, result);
     imk_result_end(result);
 }

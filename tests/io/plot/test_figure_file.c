@@ -33,10 +33,20 @@ static int set_up(void **state)
     curves[0] = (imk_curve){"gyro_x's", IMK_CURVE_POINTS, 0, POINTS, tau, deviation, lower, upper};
     curves[1] = (imk_curve){"fit", IMK_CURVE_DASHES, 1, POINTS, tau, line, NULL, NULL};
     curves[2] = (imk_curve){"", IMK_CURVE_BAND, 2, POINTS, tau, deviation, lower, upper};
-    panel = (imk_panel){"a_b `id` $x", "tau [s]", "deviation [deg/h]",
-                        true,          true,      3,
-                        curves,        0,         NULL,
-                        IMK_KEY_UPPER, NULL,      false};
+    panel = (imk_panel){"a_b `id` $x",
+                        "tau [s]",
+                        "deviation [deg/h]",
+                        true,
+                        true,
+                        3,
+                        curves,
+                        0,
+                        NULL,
+                        IMK_KEY_UPPER,
+                        NULL,
+                        false,
+                        0,
+                        0};
     figure = (imk_figure){"title", 1, 1, &panel};
     return mkdtemp(directory) ? 0 : -1;
 }
@@ -195,7 +205,8 @@ static void test_refuses_what_cannot_be_drawn(void **state)
     assert_non_null(strstr(error.expected, ".svg"));
     double nothing[POINTS] = {0}; /* no logarithm */
     imk_curve curve = {"", IMK_CURVE_POINTS, 0, POINTS, tau, nothing, NULL, NULL};
-    imk_panel empty = {"empty", "", "", true, true, 1, &curve, 0, NULL, IMK_KEY_UPPER, NULL, false};
+    imk_panel empty = {"empty",       "",   "",    true, true, 1, &curve, 0, NULL,
+                       IMK_KEY_UPPER, NULL, false, 0,    0};
     imk_figure bad = {"", 1, 1, &empty};
     CHECK_STATUS(imk_figure_write(&bad, path_in_directory("a.png"), &error), IMK_ERROR_EMPTY);
     assert_string_equal(error.field, "empty");

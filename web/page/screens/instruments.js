@@ -154,7 +154,7 @@ class InstrumentView {
 
   /** Numbers as text, four times a second. */
   tell(moment) {
-    this.clock.textContent = timeText(moment[0]);
+    this.clock.textContent = timeText(moment[0], this.about.pace);
     if (this.row) for (const { column, now } of this.charts) now.textContent = shownNumber(this.row[1 + column()]);
     this.values.forEach((cell, i) => {
       const text = shownNumber(moment[2 + this.parts.length + i]);
@@ -198,7 +198,7 @@ class InstrumentView {
     this.about = answer.about;
     showSchematic(this, answer);
     showQuantities(this);
-    this.charts.forEach(({ chart }) => chart.add(this.screen, NaN, NaN));
+    this.charts.forEach(({ chart, sample }) => (chart.add(this.screen, NaN, NaN), sample(answer.about.rate)));
     this.showTerminal();
     if (!this.playing) this.advance(1 / 60);
   }
@@ -223,8 +223,9 @@ function nested(list, indent) {
     members[0][0].length === 0 ? `${indent}${key}: ${members[0][1]}\n` : `${indent}${key}:\n${nested(members, indent + '  ')}`).join('');
 }
 
-/** "12.3 µs". */
-function timeText(seconds) {
+/** "12.3 µs"; with a pace [s/s] as many decimals as are seen to move. */
+function timeText(seconds, pace) {
   const [size, unit] = [[1, 's'], [1e-3, 'ms'], [1e-6, 'µs'], [1e-9, 'ns']].find(([size]) => seconds >= size) || [1, 's'];
-  return `${(seconds / size).toPrecision(4)} ${unit}`;
+  const number = pace ? (seconds / size).toFixed(Math.min(9, Math.max(0, Math.ceil(1 - Math.log10(pace / size))))) : String(Number((seconds / size).toPrecision(4)));
+  return `${number} ${unit}`;
 }

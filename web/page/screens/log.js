@@ -1,28 +1,141 @@
 // SPDX-License-Identifier: Apache-2.0
-// A log: dropped or chosen, identified, and its results to look at and to take away.
+// A log: dropped or chosen, looked at, identified, and its results to look at and to take away.
+//
+// Names for tests: #log-files (-input: the field for files; -text), #log-example, #log-options
+// (fields data-option="rate" …), #log-info, #log-go, #log-identify (data-part="status|cancel|error|
+// result|terminal|downloads"), #log-sort (of several logs), #log-kalibr, a[href="#device/mine"].
 
 'use strict';
 
 screens.log = {
   title: 'My log',
+  kept: true,
   show(root) {
-    const status = element('p', { role: 'status' });
-    const result = element('section');
-    const choose = element('input', { type: 'file', id: 'file', onchange: () => identify(choose.files[0]) });
-    async function identify(file) {
-      if (!file) return;
-      status.textContent = 'Reading…';
-      try {
-        const done = await engine.run(['identify', file.name, '--report', 'report.html'], {
-          files: [[file.name, file]],
-          progress: (line) => (status.textContent = line),
-        });
-        status.textContent = `${(done.milliseconds / 1000).toFixed(2)} s`;
-        result.replaceChildren(element('pre', {}, done.code === 0 ? done.out : done.err));
-      } catch (reason) {
-        status.textContent = reason.message;
-      }
-    }
-    root.append(element('h1', {}, 'My log'), element('label', { for: 'file' }, 'Log '), choose, status, result);
+    new LogScreen(root);
   },
 };
+
+class LogScreen {
+  constructor(root) {
+    this.choice = new FileChoice({ id: 'log-files', label: 'Choose a log', change: () => this.look() });
+    this.options = new ReadingOptions({ id: 'log-options', change: () => this.look() });
+    this.about = new VerbView({ id: 'log-info', own: true });
+    this.identified = new VerbView({ id: 'log-identify', own: true });
+    this.sort = element('div', { class: 'buttons', id: 'log-sort' });
+    this.go = element('button', { type: 'button', id: 'log-go', class: 'main', hidden: true, onclick: () => this.identify() }, 'Identify');
+    this.turn = 0;
+    root.append(element('h1', {}, 'What is my sensor worth?'),
+      element('p', {}, 'Record the sensor at rest, for an hour or more, and put the log here: text or CSV, .npy, .npz, PX4 ULog, ArduPilot .bin, ROS 1 bag, MCAP, UBX and others, also compressed. You get its noise with intervals, a verdict on the log, and a model to use elsewhere.'),
+      this.choice.root,
+      element('p', {}, 'No log at hand? ', element('button', { type: 'button', id: 'log-example', onclick: () => this.example() }, 'Take an example: an hour of a tactical unit, simulated')),
+      this.options.root, this.about.root, this.sort, this.go, this.identified.root);
+  }
+
+  /** An hour of a log, made here. */
+  async example() {
+    const words = ['simulate', 'tactical', '--rate', '100Hz', '--duration', '1h', '--seed', '1', '-o', 'example.csv'];
+    this.about.clear();
+    const done = await this.about.run(words);
+    if (!done) return;
+    this.made = words;
+    this.choice.files = [];
+    this.choice.add([['example.csv', new Blob([fileOf(done, 'example.csv')])]]);
+  }
+
+  /** What is in the logs, and what is missing; a log of a sensor at rest is identified at once. */
+  async look() {
+    const turn = ++this.turn, { files } = this.choice;
+    if (this.identified.waiting) this.identified.cancel();
+    this.identified.clear();
+    this.about.clear();
+    this.go.hidden = true;
+    this.sort.replaceChildren();
+    let sound = files.length > 0;
+    for (const file of files) sound = (await this.lookAt(file, turn)) && sound;
+    if (turn !== this.turn || files.length === 0) return;
+    this.go.hidden = !sound;
+    if (files.length > 1 && sound) this.askSort();
+    else if (sound) this.identify();
+  }
+
+  /** @return whether the log can be identified */
+  async lookAt([name, content], turn) {
+    const words = ['info', operand(name), ...this.options.words()];
+    const done = await this.about.run([...words, '--json'], { files: [[name, content]], begin: `Reading ${name} …` });
+    if (turn !== this.turn) return false;
+    const error = done ? done.json.error : this.about.error;
+    const result = done && done.json.result;
+    this.options.mark(error);
+    if (result) this.about.result.append(this.summary(name, done.json, words));
+    if (!result || error) return false;
+    if (result.topics.length > 0 && !this.options.value('topic')) {
+      this.askTopic(result.topics);
+      return false;
+    }
+    return true;
+  }
+
+  /** What is in a log, in the words of `info`. */
+  summary(name, { inputs, result }, words) {
+    const { usability, record } = result;
+    const made = this.made && name === 'example.csv' ? [this.made] : [];
+    return element('div', { class: 'summary' }, element('h2', {}, name),
+      element('p', {}, `${inputs.format}. ${usability ? usability.sentence : ''}`),
+      record ? this.columns(record) : null, terminalLine([...made, words]));
+  }
+
+  columns({ rows, columns, rows_from: from }) {
+    const shown = columns.map(({ name, unit }) => `${name} [${unit || '?'}]`).join(', ');
+    return element('p', { class: 'weak' }, `${rows} rows${from === 'size' ? ', by its size' : ''}: ${shown}`);
+  }
+
+  /** Which of the sensors in a log. */
+  askTopic(topics) {
+    const take = ({ topic, instance }) => () => {
+      this.options.set('topic', topic);
+      this.options.set('instance', instance > 0 ? String(instance) : '');
+      this.look();
+    };
+    this.about.result.append(element('p', {}, 'Which of its sensors?'), element('div', { class: 'buttons', 'data-part': 'topics' },
+      topics.filter(({ readable }) => readable).map((entry) => element('button', { type: 'button', onclick: take(entry) },
+        `${entry.topic}${entry.instance > 0 ? `, instance ${entry.instance}` : ''}, ${entry.samples ?? '?'} samples`))));
+  }
+
+  /** Several logs: of what? */
+  askSort() {
+    const choice = (value, text, checked) => element('label', {}, element('input', { type: 'radio', name: 'sort', value, checked }), ' ' + text);
+    this.sort.replaceChildren(element('fieldset', {}, element('legend', {}, 'These logs are'),
+      choice('runs', 'runs of one sensor: one model, and what changes from run to run', true),
+      choice('devices', 'of different sensors: their mean and spread')));
+  }
+
+  async identify() {
+    const turn = this.turn, { files } = this.choice, names = files.map(([name]) => name), taken = new Set(names);
+    const [report, model] = [freeName('report.html', taken), freeName('model.yaml', taken)];
+    const sort = this.sort.querySelector('input:checked');
+    const words = ['identify', ...names.map(operand), ...(sort ? ['--' + sort.value] : []), ...this.options.words(), '-o', model, '--report', report];
+    this.go.hidden = true;
+    const done = await this.identified.run([...words, '--json'], { files, begin: 'Identifying …' });
+    if (turn !== this.turn) return;
+    this.go.hidden = Boolean(done);
+    this.options.mark(this.identified.error);
+    if (done) this.showIdentified(done, words, report, model);
+  }
+
+  showIdentified(done, words, report, model) {
+    const page = fileOf(done, report), bytes = fileOf(done, model);
+    const offers = [['Model (YAML)', 'model.yaml', bytes], ['Report (HTML)', 'report.html', page], ['Numbers (JSON)', 'identify.json', done.out]];
+    const beside = [downloadButtons(offers.filter(([, , content]) => content))];
+    const after = [];
+    if (bytes) {
+      sensors.keep('model.yaml', bytes);
+      beside.push(element('p', {}, 'What would it cost me? ', element('a', { href: '#device/model.yaml' }, 'How far a navigator with this sensor drifts'), ', and ',
+        element('a', { href: '#grades/model.yaml' }, 'where it stands among others'), '.'));
+      after.push(element('h2', {}, 'For another program'), makeConversion(bytes, done.json.inputs));
+    }
+    after.push(terminalLine([words]));
+    if (page) this.identified.showReport(page, { beside, after });
+    else this.identified.result.replaceChildren(element('pre', { tabindex: '0' }, done.out), ...beside, ...after);
+    this.identified.comeIntoView();
+  }
+}

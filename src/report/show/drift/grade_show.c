@@ -477,5 +477,6 @@ void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *
     imk_result_for(result, IMK_FOR_PLOT);
     imki_show_grade_plot(r, map, result);
     imk_result_for(result, IMK_FOR_PAGE);
+    imki_show_grade_noise(r, result);
     imki_show_grade_maps(r, result);
 }

@@ -45,6 +45,8 @@ const char *imki_region_name(const imk_map_region *region, char text[IMKI_WORDS]
 void imki_show_grade_plot(const imk_graded_several *r, int map, imk_result *result);
 /* Each with its sources, on the page. */
 void imki_show_grade_maps(const imk_graded_several *r, imk_result *result);
+/* The Allan deviations of their noise; nothing when none states any. */
+void imki_show_grade_noise(const imk_graded_several *r, imk_result *result);
 /* As data: all regions; where a model stands. */
 void imki_show_map_data(imk_result *result);
 void imki_show_place_data(const imk_graded *one, imk_result *result);

@@ -1,63 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures: the outputs of a run against time, the views of an instrument (also animated), and the
- * results of a laboratory. */
+/* Pictures: the views of an instrument (also animated), and the results of a laboratory. */
 #include "jobs/physics/physics_log_internal.h"
 #include "physics_show_internal.h"
 
 #include <math.h>
 #include <stdio.h>
-
-static void begin_panel(imk_figure_builder *figure, const char *title, const char *x, const char *y,
-                        const char *unit)
-{
-    char x_label[IMK_PHYSICS_LABEL], y_label[IMK_PHYSICS_LABEL];
-    const imk_panel panel = {.title = title,
-                             .x_label = imki_physics_label(x_label, x, unit),
-                             .y_label = imki_physics_label(y_label, y, unit)};
-    imk_figure_panel(figure, &panel);
-}
-
-/* ---- a run ----------------------------------------------------------------------------------- */
-
-static void add_curves(const imk_physics_log *run, const double *x, const double *output,
-                       imk_curve_style style, bool with_input, imk_figure_builder *figure)
-{
-    imk_curve curve = {with_input ? "output" : "", style, 0, run->points, x, output, NULL, NULL};
-    imk_figure_curve(figure, &curve, 1);
-    if (with_input) {
-        curve = (imk_curve){"input", IMK_CURVE_DASHES, 1, run->points, x, run->input, NULL, NULL};
-        imk_figure_curve(figure, &curve, 1);
-    }
-}
-
-/* Output 0 against the input: a response curve with its dead band if the sine is slow, an ellipse
- * if the instrument lags behind. */
-void imki_show_physics_run(const imk_physics_shown *p, imk_result *result)
-{
-    const imk_physics_log *run = p->run;
-    const imk_instrument *instrument = run->settings.instrument;
-    char x[IMK_PHYSICS_LABEL], y[IMK_PHYSICS_LABEL], title[IMK_PHYSICS_LABEL + 200];
-    imk_figure_builder *figure = imk_result_figure(
-        result, imki_physics_name(p), 2,
-        run->stride > 1 ? "Each point is the mean of several samples."
-                        : "Each point is a sample: the mean since the previous one.");
-    for (size_t i = 0; i < instrument->output_count; i++) {
-        const imk_signal *signal = &instrument->outputs[i];
-        snprintf(title, sizeof title, "%s: %.190s", imki_physics_label(x, signal->name, "1"),
-                 signal->help);
-        const imk_panel panel = {
-            .title = title,
-            .x_label = "time [s]",
-            .y_label = imki_physics_label(y, signal->name, imk_physics_output_unit(run, i).text)};
-        imk_figure_panel(figure, &panel);
-        add_curves(run, run->time, run->curve[i], IMK_CURVE_LINE, i == 0, figure);
-    }
-    if (run->settings.input.frequency > 0) {
-        begin_panel(figure, "Output against input", "input", "output",
-                    imk_physics_output_unit(run, 0).text);
-        add_curves(run, run->input, run->curve[0], IMK_CURVE_POINTS, true, figure);
-    }
-}
 
 /* ---- views ----------------------------------------------------------------------------------- */
 

@@ -26,6 +26,44 @@ static const char *const bias_unit[2] = {"rad/s", "m/s^2"};
 static const char *const keys[IMK_FILTER_ANSWERS] = {
     "data_sheet", "data_sheet_x10", "fit", "safe", "fit_scale_factors", "safe_scale_factors"};
 
+/* ---- judgement ---- */
+
+/* Smallest and largest NEES of an answer. */
+static void range_of(const imk_tune_model *r, int kind, double *low, double *high)
+{
+    *low = (double)INFINITY;
+    *high = 0.0;
+    for (size_t t = 0; t < r->tuning->time_count; t++) {
+        *low = fmin(*low, r->tuning->answer[kind].consistency[t].nees);
+        *high = fmax(*high, r->tuning->answer[kind].consistency[t].nees);
+    }
+}
+
+/* Does a constant noise describe the errors, and what is it? */
+static void judge(const imk_tune_model *r, imk_result *result)
+{
+    const imk_filter_tuning *t = r->tuning;
+    imki_reasons reasons = {.result = result};
+    double low, high;
+    range_of(r, IMK_FILTER_FIT, &low, &high);
+    if (t->inconstant)
+        imki_reason(&reasons,
+                    "no constant noise describes these errors, of which %s is the largest: the fit "
+                    "has a NEES of %.3g to %.3g",
+                    t->source[t->worst_source].text, low, high);
+    else
+        imki_reason(
+            &reasons,
+            "with the noise \"fit\" the filter is consistent at all times, its NEES %.3g to "
+            "%.3g",
+            low, high);
+    range_of(r, IMK_FILTER_STATED, &low, &high);
+    imki_reason(&reasons, "with that of the data sheet it is %.3g to %.3g", low, high);
+    if (t->inconstant)
+        imki_reason(&reasons, "\"safe\" is nowhere overconfident");
+    imki_judge(&reasons, t->inconstant ? IMK_USABLE_WITH_CARE : IMK_USABLE, "");
+}
+
 /* ---- data ---- */
 
 static void show_three(const char *key, const double value[3], const char *unit, imk_result *result)
@@ -111,6 +149,7 @@ static void show_data(const imk_tune_model *r, const imk_unstated *assumed, imk_
     imk_result_count(result, "runs", (long long)r->settings.run_count);
     imk_result_end(result);
     imk_result_object(result, "result");
+    judge(r, result);
     imk_result_flag(result, "inconstant", tuning->inconstant);
     imk_result_text(result, "largest_error", tuning->source[tuning->worst_source].name);
     imki_show_texts(result, "omitted", tuning->omitted_count, tuning->omitted);
@@ -280,25 +319,6 @@ static void show_shares(const imk_tune_model *r, imk_result *result)
     }
 }
 
-static void show_verdict(const imk_tune_model *r, imk_result *result)
-{
-    char text[600];
-    imk_tune_verdict(r, text, sizeof text);
-    if (*text)
-        imk_result_finding(result, 2, text);
-}
-
-/* Smallest and largest NEES of an answer. */
-static void range_of(const imk_tune_model *r, int kind, double *low, double *high)
-{
-    *low = (double)INFINITY;
-    *high = 0.0;
-    for (size_t t = 0; t < r->tuning->time_count; t++) {
-        *low = fmin(*low, r->tuning->answer[kind].consistency[t].nees);
-        *high = fmax(*high, r->tuning->answer[kind].consistency[t].nees);
-    }
-}
-
 void imk_tune_verdict(const imk_tune_model *r, char *text, size_t size)
 {
     const imk_filter_tuning *tuning = r->tuning;
@@ -353,13 +373,10 @@ void imk_show_tune(const imk_tune_model *r, const imk_unstated *assumed, imk_res
     if (tuning->long_count > 0)
         imk_result_line(result, "  left out: %zu time%s longer than a motion allows",
                         tuning->long_count, tuning->long_count > 1 ? "s" : "");
+    imki_tune_figure(r, result);
     show_numbers(r, result);
     show_nees(r, result);
     show_detail(r, IMK_FILTER_FIT, result);
     show_detail(r, IMK_FILTER_SAFE, result);
     show_shares(r, result);
-    imk_result_for(result, IMK_FOR_PAGE);
-    show_verdict(r, result);
-    imk_result_for(result, IMK_FOR_BOTH);
-    imki_tune_figure(r, result);
 }
