@@ -145,7 +145,7 @@ static void for_each(visitor *visit)
         const imk_schematic *schematic = imk_schematic_of(instrument);
         assert_true(instrument->design_size <= sizeof design);
         if (!schematic)
-            continue;
+            fail_msg("%s has no schematic", instrument->name);
         assert_ptr_equal(schematic->instrument, instrument);
         instrument->set_default(design);
         visit(schematic, design);
