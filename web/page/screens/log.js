@@ -50,29 +50,31 @@ class LogScreen {
     this.about.clear();
     this.go.hidden = true;
     this.sort.replaceChildren();
-    let sound = files.length > 0;
-    for (const file of files) sound = (await this.lookAt(file, turn)) && sound;
-    if (turn !== this.turn || files.length === 0) return;
-    this.go.hidden = !sound;
-    if (files.length > 1 && sound) this.askSort();
-    else if (sound) this.identify();
+    const records = [];
+    for (const file of files) records.push(await this.lookAt(file, turn));
+    if (turn !== this.turn || files.length === 0 || records.includes(null)) return;
+    this.go.hidden = false;
+    if (files.length > 1) this.askSort();
+    else if (records[0].motion === 'at_rest') this.identify();
+    else this.about.result.append(element('p', {}, 'Noise is identified from a sensor at rest. A log of poses is for ', element('a', { href: '#calibrate' }, 'calibration'), '.'));
   }
 
-  /** @return whether the log can be identified */
+  /** @return the record of a log that can be identified; null if something is missing */
   async lookAt([name, content], turn) {
     const words = ['info', operand(name), ...this.options.words()];
     const done = await this.about.run([...words, '--json'], { files: [[name, content]], begin: `Reading ${name} …` });
-    if (turn !== this.turn) return false;
+    if (turn !== this.turn) return null;
     const error = done ? done.json.error : this.about.error;
+    if (error && error.code === 'unsupported') this.about.showProblem({ ...error, next: commandLine(['convert', operand(name), name.replace(/\.\w+$/, '') + '.npz']) });
     const result = done && done.json.result;
     this.options.mark(error);
     if (result) this.about.result.append(this.summary(name, done.json, words));
-    if (!result || error) return false;
+    if (!result || error) return null;
     if (result.topics.length > 0 && !this.options.value('topic')) {
       this.askTopic(result.topics);
-      return false;
+      return null;
     }
-    return true;
+    return result.record;
   }
 
   /** What is in a log, in the words of `info`. */
