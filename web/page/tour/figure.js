@@ -155,7 +155,7 @@ function shownResult(done, figure) {
   if (figure.animation) {
     const host = element('div', { class: 'drawn' });
     const drawing = new DOMParser().parseFromString(text('figure.svg'), 'image/svg+xml').documentElement;
-    host.attachShadow({ mode: 'open' }).append(element('style', {}, 'svg { display: block; width: 100%; height: auto; }'), document.importNode(drawing, true));
+    host.attachShadow({ mode: 'open' }).append(element('style', {}, 'svg { display: block; width: 100%; height: auto; } @media screen and (prefers-color-scheme: dark) { svg { filter: invert(.9) hue-rotate(180deg); } }'), document.importNode(drawing, true));
     return host;
   }
   if (figure.readings) return readingsTable(done.out);

@@ -126,10 +126,10 @@ const tourSubjects = [
     equations: ['y_0/Ω ≈ (k x_0)/(2 π Δf)', 'f_b ≈ 0.54 Δf', 'f_b = f_s/(2 Q)'],
     letters: 'Δf split of the resonances, f_b bandwidth (3 dB); the first two lines are for a split that is small compared with the frequency and large compared with the width of the resonance, the third one for no split; Q quality factor.',
     figure: {
-      caption: 'Path of the mass: drive across, sense motion up, in very different units. Quadrature tilts the line, the rate opens it to an ellipse.',
-      files: { 'mine.yaml': 'imukit: 1\ninstrument: tuning_fork\nsense: {split: {split}}\n' },
-      run: ['physics mine.yaml --no-noise --rate "{rate}" --view 3 --animate figure.svg'], animation: true,
-      controls: [tourRate('100 deg/s', 150), { name: 'split', label: 'Split', unit: 'Hz', minimum: 200, maximum: 2000, value: '1000 Hz' }],
+      caption: 'Both arrangements, and what the split does to the sense motion.',
+      live: 'tuning_fork', curve: 'sense_displacement',
+      controls: [{ name: 'arrangement', label: 'Sense motion', choices: 'in-plane|out-of-plane', value: 'in-plane' }, tourRate('100 deg/s', 150),
+        { name: 'sense.split', label: 'Split', unit: 'Hz', minimum: 200, maximum: 2000, value: '1000 Hz' }],
     },
     exercise: {
       question: 'Both resonances are at 14 kHz (no split), Q of the sense motion is 1000, the loop open. What is the bandwidth, in Hz?',
