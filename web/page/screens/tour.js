@@ -110,7 +110,7 @@ function shownAnswer({ run, files, path, solution }, { out, quantity }) {
   const length = before < 0 ? 0 : /^[-+.\deE]*/.exec(out.slice(before))[0].length;
   mark.append(out.slice(before, before + length));
   const output = element('pre', { tabindex: 0, class: 'output' }, ...(before < 0 ? [out] : [out.slice(0, before), mark, out.slice(before + length)]));
-  requestAnimationFrame(() => (output.scrollTop = mark.offsetTop - output.offsetTop - output.clientHeight / 2));
+  requestAnimationFrame(() => (output.scrollTop = mark.offsetTop - output.clientHeight / 2));
   return [element('p', {}, element('strong', {}, quantityText(quantity)), `: ${solution}`),
     element('pre', { tabindex: 0 }, terminalLines(run, files || {})),
     element('p', {}, 'In the output at ', element('code', {}, path.join(' › ')), `, in SI units: ${quantity.value} ${quantity.unit}`), output];
