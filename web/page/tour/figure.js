@@ -50,8 +50,12 @@ class TourInstrument extends InstrumentView {
       for (const { name, value } of this.figure.controls) {
         if (name in inputNames) await this.expose(name, value);
         else if (name !== 'instrument') this.design.set(name, value);
+        if (this.ended) return;
       }
-      this.layOut(await askLive('change', this.designFile()));
+      const begun = await askLive('change', this.designFile());
+      if (this.ended) return;
+      if (begun.problem) throw new Error(begun.problem);
+      this.layOut(begun);
       this.status.textContent = '';
       this.play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
       if (!this.playing) this.advance(1 / 60);
@@ -61,7 +65,6 @@ class TourInstrument extends InstrumentView {
   }
 
   layOut(answer) {
-    if (this.ended) return;
     const { outputs, signals } = answer.about, named = ({ name }) => name === this.figure.curve;
     this.charts = [signals.some(named) ? makeChart('Signal', signals, outputs.length, signals.findIndex(named))
       : makeChart('Output', outputs, 0, Math.max(0, outputs.findIndex(named)))];
@@ -129,7 +132,8 @@ function showComputedFigure(root, figure) {
   });
   const inUnit = (name, text) => {
     const control = figure.controls.find((one) => one.name === name);
-    return control.choices || text.trim().endsWith(' ' + control.unit) ? '' : `Write it in ${control.unit}.`;
+    const bare = Object.values(figure.files || {}).some((file) => file.includes(`{${name}.number}`));
+    return bare && !text.trim().endsWith(' ' + control.unit) ? `Write it in ${control.unit}.` : '';
   };
   async function change(name, text) {
     const wrong = inUnit(name, text);

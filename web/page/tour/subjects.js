@@ -19,7 +19,7 @@ const tourSubjects = [
     letters: 'ω angular rate, θ angle; ω_E rate of the Earth, 15.04 deg/h; ω_v its vertical part at the latitude φ.',
     figure: {
       caption: 'Choose a kind and turn it.',
-      live: 'rate_gyro', names: { 'spinning wheel': 'rate_gyro', light: 'ring_laser', vibration: 'tuning_fork' },
+      live: 'rate_gyro', curve: 'beat_frequency', names: { 'spinning wheel': 'rate_gyro', light: 'ring_laser', vibration: 'tuning_fork' },
       controls: [{ name: 'instrument', label: 'Kind', choices: 'spinning wheel|light|vibration', value: 'spinning wheel' }, tourRate('20 deg/s')],
     },
     exercise: {
