@@ -50,7 +50,7 @@ function sectionOf(article, title) {
 /** A line of the command with a button that copies it. */
 function terminalLine(lines, title = 'The same at a terminal') {
   const text = lines.map(commandLine).join('\n');
-  return element('div', { class: 'terminal', 'data-part': 'terminal' }, element('h3', {}, title),
+  return element('div', { class: 'terminal', 'data-part': 'terminal' }, element('p', {}, title),
     element('pre', { tabindex: '0' }, text),
     element('button', { type: 'button', onclick: () => copyText(text) }, 'Copy'));
 }

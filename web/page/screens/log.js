@@ -17,7 +17,10 @@ screens.log = {
 
 class LogScreen {
   constructor(root) {
-    this.choice = new FileChoice({ id: 'log-files', label: 'Choose a log', change: () => this.look() });
+    this.choice = new FileChoice({ id: 'log-files', label: 'Choose a log', change: () => {
+      this.made = null;
+      this.look();
+    } });
     this.options = new ReadingOptions({ id: 'log-options', change: () => this.look() });
     this.about = new VerbView({ id: 'log-info', own: true });
     this.identified = new VerbView({ id: 'log-identify', own: true });
@@ -37,9 +40,9 @@ class LogScreen {
     this.about.clear();
     const done = await this.about.run(words);
     if (!done) return;
-    this.made = words;
     this.choice.files = [];
     this.choice.add([['example.csv', new Blob([fileOf(done, 'example.csv')])]]);
+    this.made = words;
   }
 
   /** What is in the logs, and what is missing; a log of a sensor at rest is identified at once. */
@@ -80,7 +83,7 @@ class LogScreen {
   /** What is in a log, in the words of `info`. */
   summary(name, { inputs, result }, words) {
     const { usability, record } = result;
-    const made = this.made && name === 'example.csv' ? [this.made] : [];
+    const made = this.made ? [this.made] : [];
     return element('div', { class: 'summary' }, element('h2', {}, name),
       element('p', {}, `${inputs.format}. ${usability ? usability.sentence : ''}`),
       record ? this.columns(record) : null, terminalLine([...made, words]));
