@@ -186,7 +186,7 @@ imki_allan_judgement imki_allan_judge(const imk_allan_log *a, imk_result *result
     else
         imki_reason(&reasons, "each deviation is known to %.0f %% there",
                     100 * uncertainty_at(a, k, points - 1));
-    if (points > 0)
+    if (points > 2)
         judge_floors(a, k, points - 1, &reasons);
     return (imki_allan_judgement){usability, imki_judgement(&reasons, usability, use)};
 }

@@ -40,12 +40,13 @@ function parseEquation(text) {
       const inside = list(')');
       at++;
       if (word === '√(') return ['msqrt', inside];
-      return Object.assign(['mrow', [['mo', '('], ...inside, ['mo', ')']]], { inside });
+      const size = { stretchy: String(JSON.stringify(inside).includes('mfrac')) };
+      return Object.assign(['mrow', [['mo', '(', size], ...inside, ['mo', ')', size]]], { inside });
     }
     if (/^\d/.test(word)) return ['mn', word];
     if (!/^\p{L}/u.test(word)) return ['mo', word === '-' ? '−' : word];
-    if (word.length === 2) return ['mover', [['mi', word[0]], ['mo', word[1] === '\u20d7' ? '→' : '~']]];
-    return ['mi', word];
+    if (/\p{M}/u.test(word)) return ['mover', [['mi', word[0]], ['mo', word[1] === '\u20d7' ? '→' : '~']]];
+    return word.length > 2 ? ['mrow', [['mi', word], ['mspace', '', { width: '.17em' }]]] : ['mi', word];
   }
   function script() {
     if (words[at] === '(') return bare(base());
@@ -70,6 +71,20 @@ function parseEquation(text) {
     return above ? ['msup', [node, above]] : node;
   }
   return list('');
+}
+
+/** Text in which letters with an index, "x_max", are set as such. */
+function withIndices(text) {
+  return text.split(/(?<=\p{L})_([\p{L}\d]+)/u).map((part, i) => (i % 2 ? element('sub', {}, part) : part));
+}
+
+/** Without a font for mathematics indices stand on the line: the style lowers them. */
+function lowerIndices(root) {
+  const probe = equation('H_E');
+  root.append(probe);
+  const [letter, index] = [...probe.querySelectorAll('mi')].map((part) => part.getBoundingClientRect());
+  probe.remove();
+  root.classList.toggle('flat', index.bottom - letter.bottom < 0.1 * letter.height);
 }
 
 /** An element that shows the equation. */
