@@ -574,6 +574,9 @@ static void test_refusals(void **state)
          E "--duration runs the instrument and --reduce does not: leave one out\n" TRY("physics")},
         {"ring_laser --view 1", 2,
          E "--view is drawn by --plot FILE or --animate FILE: add one\n" TRY("physics")},
+        {"ring_laser -d 1s --report a.pdf", 2,
+         E "--report a.pdf: a report is a page, FILE.html; a browser prints it as PDF: chromium "
+           "--headless --no-pdf-header-footer --print-to-pdf=FILE.pdf FILE.html\n" TRY("physics")},
         {"--view ring_laser", 2,
          E
          "--view ring_laser: the instrument stands before: imukit physics ring_laser --view\n" TRY(
