@@ -74,6 +74,10 @@ async function bench() {
   await page.value(`[...document.querySelectorAll('button')].filter((one) => /^Play/.test(one.textContent)).forEach((one) => one.click())`);
   await page.until(`document.querySelectorAll('.map .track').length === 5 && /[0-9] m/.test(document.querySelector('.bench table').innerText)`);
   await page.until(`Number(document.querySelector('.bench p .number').textContent) > 0`);
+  await page.click('.noise button');
+  await page.until(`document.querySelector('.noise button').textContent === 'Stop' && loudspeaker.context.currentTime > 0.2`);
+  await page.click('.noise button');
+  await page.until(`document.querySelector('.noise button').textContent === 'Listen'`);
   await page.value(set('input[aria-label^="Bias of"]', '5 apples', 'change'));
   await page.until(`/unit/.test([...document.querySelectorAll('.problem')].map((one) => one.textContent).join())`);
   must((await page.overflow()) <= 0, 'the bench is wider than a telephone');
