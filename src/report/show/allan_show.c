@@ -187,7 +187,7 @@ static void judge(const imk_allan_log *a, imk_result *result)
     else
         imki_reason(&reasons, "each deviation is known to %.0f %% there",
                     100 * uncertainty_at(a, k, points - 1));
-    if (points > 0)
+    if (points > 2)
         judge_floors(a, k, points - 1, &reasons);
     imki_judge(&reasons, usability, use);
 }
