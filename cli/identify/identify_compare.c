@@ -25,13 +25,16 @@ static int check_request(const identify_options *o)
     if (o->devices && (o->output || o->into || o->name || o->twin || o->plot || o->truth))
         return command_misused(
             "--devices compares sensors and makes no model: leave out %s, or identify each log "
-            "alone",
+            "alone%s",
             o->output ? "--output"
             : o->into ? "--into"
             : o->name ? "--name"
             : o->twin ? "--twin"
             : o->plot ? "--plot"
-                      : "--truth");
+                      : "--truth",
+            o->plot && !o->output && !o->into && !o->name && !o->twin
+                ? "; imukit allan LOG... --plot draws their deviations side by side"
+                : "");
     return -1;
 }
 

@@ -18,12 +18,12 @@ IMK_API bool imk_plot_available(const char *path);
 
 /** Draw a figure to FILE.svg, FILE.png or FILE.pdf, or to standard output with "term" (in letters,
  *  as large as the terminal; in colours on a terminal unless NO_COLOR is set). SVG is drawn by
- *  imk_figure_svg(); rsvg-convert makes PNG, twice as large, and PDF of it, and gnuplot draws
- * letters. These run in a folder of TMPDIR and see no names but their own there, so none is a
- * command to them; they have 120 s, or IMUKIT_DRAWING_SECONDS.
+ *  imk_figure_svg(); of it rsvg-convert makes PNG, twice as large, and PDF; gnuplot draws letters.
+ *  These run in a folder of TMPDIR and see no names but their own there, so none is a command to
+ *  them; they have 120 s, or IMUKIT_DRAWING_SECONDS.
  *  @return IMK_ERROR_EMPTY (error.field: the panel without a drawable point), IMK_ERROR_FORMAT
  *          (another ending), IMK_ERROR_UNSUPPORTED (the program is missing, or failed),
- * IMK_ERROR_OPEN, IMK_ERROR_WRITE, IMK_ERROR_MEMORY */
+ *          IMK_ERROR_OPEN, IMK_ERROR_WRITE, IMK_ERROR_MEMORY */
 IMK_API imk_status imk_figure_write(const imk_figure *figure, const char *path, imk_error *error);
 
 /** Write an animation to a file whose name ends in .svg.

@@ -37,8 +37,8 @@ static double *report(const imk_strapdown *s, const imk_navigation_state *start,
 /** Navigate the rows of reckon_room(), dt [s] apart, from latitude 45 deg, longitude 10 deg and
  *  height 0, level and with a heading [deg].
  *  @param every  rows between two reports
- *  @return time [s], north [m], east [m], heading [deg] at the start and after each `every` rows;
- *          NULL when memory is exhausted */
+ *  @return time [s], north [m], east [m] and heading [deg] at the start and after each `every`
+ *          rows; NULL when memory is exhausted */
 double *EXPORT(reckon)(int rows, double dt, double heading, int every)
 {
     const double degree = imk_unit_of("deg").scale;

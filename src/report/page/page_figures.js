@@ -455,6 +455,7 @@ const imukitFigures = (() => {
     }
     fresh(root, '.imukit .table').forEach(imukitPage.attachTable);
     fresh(root, '.imukit-page .imukit').forEach(imukitPage.attachTheme);
+    imukitPage.keepDark();
   }
 
   return {attach, setDark: imukitPage.setDark};
