@@ -95,8 +95,8 @@ function showExercise(exercise, done) {
   return element('section', { class: 'exercise' }, element('h2', {}, 'Exercise'),
     element('p', { id: 'question' }, withIndices(exercise.question)),
     exercise.table ? element('pre', { tabindex: 0 }, exercise.table) : null,
-    element('form', { onsubmit: check }, element('label', { for: 'answer' }, 'Answer, with unit '), field,
-      ' ', element('button', {}, 'Check'), ' ', element('button', { type: 'button', onclick: show }, 'Show the answer')), said, answer);
+    element('form', { class: 'buttons', onsubmit: check }, element('label', { for: 'answer' }, 'Answer, with unit'), field,
+      element('button', {}, 'Check'), element('button', { type: 'button', onclick: show }, 'Show the answer')), said, answer);
 }
 
 async function answerOf({ run, files, path, unit }) {

@@ -65,9 +65,9 @@ class TourInstrument extends InstrumentView {
   }
 
   layOut(answer) {
-    const { outputs, signals } = answer.about, named = ({ name }) => name === this.figure.curve;
-    this.charts = [signals.some(named) ? makeChart('Signal', signals, outputs.length, signals.findIndex(named))
-      : makeChart('Output', outputs, 0, Math.max(0, outputs.findIndex(named)))];
+    const { outputs, signals, rate } = answer.about, named = ({ name }) => name === this.figure.curve;
+    this.charts = [signals.some(named) ? makeChart('Signal', signals, outputs.length, signals.findIndex(named), rate)
+      : makeChart('Output', outputs, 0, Math.max(0, outputs.findIndex(named)), rate)];
     this.root.prepend(this.drawing, element('p', { class: 'buttons' }, this.playButton, 'Time of the run ', this.clock), ...this.charts.map(({ root }) => root), this.slow);
     showSchematic(this, answer);
     showQuantities(this);

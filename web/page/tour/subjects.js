@@ -283,7 +283,7 @@ const tourSubjects = [
     title: 'Accelerometer: axis offset',
     text: ['The three accelerometers of a unit cannot all be at one point. Each has a lever arm from the point to which its reading should belong. When the unit turns, every other point is accelerated: towards the axis by the square of the rate times the distance, and sideways by the angular acceleration. An accelerometer that is off along its own axis feels the first part; a steady turn already makes it wrong.',
       'Mind the sign. The acceleration is inwards, so a sensor at +x reads less than the centre, and the correction adds the same amount. One centimetre at 100 degrees per second is 3 mg, large for a good unit. Angular vibration makes it a constant error, as a square does not cancel. The lever arms are found by spinning the unit, and taken out with the rates of the gyros.'],
-    equations: ['f_x = f_O - (ω_y^2 + ω_z^2) r_x + (ω_x ω_y - α_z) r_y + (ω_x ω_z + α_y) r_z'],
+    equations: ['f_x = f_O - (ω_y^2 + ω_z^2) r_x', '+ (ω_x ω_y - α_z) r_y + (ω_x ω_z + α_y) r_z'],
     letters: 'f_x reading of the x accelerometer at the place r, f_O force along x at the reference point; ω angular rate, α angular acceleration.',
     figure: {
       caption: 'Readings of a unit that turns about its vertical axis; the x accelerometer is off the centre.',
