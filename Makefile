@@ -12,6 +12,8 @@
 #   make faults  let memory, files and the disk fail, call by call, under every verb: some minutes
 #   make fuzz    feed the parsers with random input for a while
 #   make octave  build/octave: functions of GNU Octave; runs their tests
+#   make web     the page that does it all in a browser: build/web/index.html
+#   make test-web  its tests in Chromium, as it is published
 #   make mpi     build/imukit-mpi too: campaigns on many machines (Open MPI)
 #   make python  the Python package: a wheel in build/dist, and its tests
 #   make install-python  install that wheel for this user's /usr/bin/python3
@@ -32,7 +34,7 @@ quiet = >$(BUILD)/make.log 2>&1 || { cat $(BUILD)/make.log; exit 1; }
 configure = mkdir -p $(BUILD) && $(alone) cmake -S . -B $(BUILD) -D CMAKE_BUILD_TYPE=Release
 compile = $(alone) cmake --build $(BUILD) -j $(JOBS)
 
-.PHONY: all demo test check tidy-deep sanitize-all bench experiments experiments-all faults fuzz octave mpi python install-python install deps clean help
+.PHONY: all demo test check tidy-deep sanitize-all bench experiments experiments-all faults fuzz octave web test-web mpi python install-python install deps clean help
 
 all:
 	@tools/install_dependencies.sh build
@@ -91,6 +93,17 @@ octave:
 	@tools/install_dependencies.sh build octave
 	@mkdir -p build-check
 	@$(alone) BUILD=$(BUILD) tools/check_octave.sh
+
+web:
+	@tools/install_dependencies.sh web
+	@$(alone) BUILD=$(BUILD) tools/build_web.sh
+	@ls -l $(BUILD)/web/index.html
+
+test-web:
+	@tools/install_dependencies.sh build web check
+	@$(configure) $(quiet)
+	@$(compile) --target imukit-command $(quiet)
+	@$(alone) BUILD=$(BUILD) tools/test_web.sh
 
 mpi:
 	@tools/install_dependencies.sh build mpi

@@ -7,9 +7,9 @@ cd "$(dirname "$0")/.."
 status=0
 complain() { echo "$*"; status=1; }
 
-mapfile -t code < <(find include src cli python tests bench fuzz examples experiments tools .ci cmake Makefile \
+mapfile -t code < <(find include src cli python tests bench fuzz examples experiments web tools .ci cmake Makefile \
     CMakeLists.txt -type f \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.sh' -o -name '*.py' \
-    -o -name '*.cmake' -o -name CMakeLists.txt -o -name Makefile -o -path 'tools/*' \
+    -o -name '*.cmake' -o -name '*.js' -o -name '*.mjs' -o -name CMakeLists.txt -o -name Makefile -o -path 'tools/*' \
     -o -path '.ci/*' \) ! -name '*.txt' ! -name '*.pyc' ; echo CMakeLists.txt)
 awk 'FNR > 3 { nextfile }
     /SPDX-License-Identifier: Apache-2.0/ { has[FILENAME] }
@@ -24,9 +24,9 @@ awk 'FNR > 3 { nextfile }
 
 # A name says what is inside; two files of the same name would not. The header of a module may have
 # the name of its source file.
-for name in $(find src cli python -name '*.c' -printf '%f\n' | sort | uniq -d); do
+for name in $(find src cli python web -name '*.c' -printf '%f\n' | sort | uniq -d); do
     complain "$name: more than one file has this name:" \
-        $(find src cli python -name "$name" -printf '%p ')
+        $(find src cli python web -name "$name" -printf '%p ')
 done
 
 # Of two messages with one code the second would never be told.
@@ -34,7 +34,7 @@ for code in $(grep -oE '^    \{"[^"]+"' src/report/finding_text.c | sort | uniq 
     complain "src/report/finding_text.c: two messages have the code $code: name the job, JOB:$code"
 done
 
-grep -rnE '\b(TODO|FIXME|XXX|HACK)\b' include src cli python tests bench fuzz examples cmake &&
+grep -rnE '\b(TODO|FIXME|XXX|HACK)\b' include src cli python web tests bench fuzz examples cmake &&
     complain "something is left behind (above)"
 
 # Scripts that no other check runs can be parsed.

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs the Debian packages of the groups named (all when none is) that are missing.
 #
-#     tools/install_dependencies.sh [build|run|test|check|bench|fuzz|octave|mpi]...
+#     tools/install_dependencies.sh [build|run|test|check|bench|fuzz|octave|web|npm|mpi]...
 #
 # Nothing is missing: says nothing and asks apt nothing. Otherwise it installs as root or through
 # sudo, or prints the one line to run. On systems without dpkg it leaves the matter to CMake.

@@ -130,6 +130,9 @@ static int check_tasks(const physics_options *o, const char *operand)
         return command_misused("an operand is missing: imukit physics %s; imukit physics lists the "
                                "instruments",
                                physics_verb.operands);
+    if (!operand && o->view && imk_instrument_find(o->view))
+        return command_misused("--view %s: the instrument stands before: imukit physics %s --view",
+                               o->view, o->view);
     if (o->show && (models || runs || o->plot || o->report || o->animate || o->json))
         return command_misused("--show prints the design and nothing else");
     if (o->reduce && !o->sweep && runs)

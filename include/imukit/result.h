@@ -122,7 +122,8 @@ IMK_API void imk_result_animation(imk_result *result, const imk_animation *anima
                                   const char *caption);
 
 /** Add a drawing to the page, the SVG text of imk_schematic_svg() or imk_schematic_animated();
- *  nothing on the terminal. */
+ *  nothing on the terminal.
+ *  @param svg  NULL: there was no memory for it, which the result remembers */
 IMK_API void imk_result_drawing(imk_result *result, const char *svg, const char *caption);
 
 /** A table, filled row by row; the first row is the header. A table without rows is not shown. */

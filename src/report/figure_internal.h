@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the files that draw a figure share. Drawings by gnuplot use the same axes, sizes and colours
+/* What the files that draw a figure share. Drawings in letters have the same axes and colours
  * (io/plot/gnuplot_script.c). Lengths are in pixels, y downwards; the drawing is written in whole
  * tenths of them. */
 #ifndef IMUKIT_REPORT_FIGURE_INTERNAL_H

@@ -217,7 +217,7 @@ void imki_page_drawing(imki_page *page, const char *svg, const char *caption)
 {
     if (!page || !svg)
         return;
-    imki_text_put(&page->text, "<figure class=\"animation\">\n");
+    imki_text_put(&page->text, "<figure class=\"animation\" tabindex=\"0\">\n");
     put_svg(page, svg);
     element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
 }

@@ -98,8 +98,10 @@ void imk_result_animation(imk_result *result, const imk_animation *animation, co
 void imk_result_drawing(imk_result *result, const char *svg, const char *caption)
 {
     imki_block *made = add(result, IMKI_BLOCK_DRAWING, caption);
-    if (made)
-        made->drawing = imki_arena_text(&result->arena, svg);
+    if (!made)
+        return;
+    made->drawing = imki_arena_text(&result->arena, svg);
+    result->arena.failed = result->arena.failed || !svg;
 }
 
 /* -------------------------------------------------------------------------------------- tables */

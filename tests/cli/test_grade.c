@@ -216,7 +216,7 @@ static void test_maps(void **state)
     assert_int_equal(run("$I grade a.yaml --map cost --plot c.svg"), 1);
     check_contains(err, "--map: the model has no value for this map", err);
     assert_int_equal(access("c.svg", F_OK), -1);
-    if (imk_plot_available()) {
+    if (imk_plot_available("term")) {
         assert_int_equal(run("$I grade tactical --plot term"), 0);
         check_contains(out, "stability of the scale factor [ppm]", "term");
     }

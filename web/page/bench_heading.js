@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A bias that is turned on and off while a unit at rest navigates: the heading runs away and stays.
-// Each stretch between two switches is simulated and navigated by the verbs, from the heading that
-// the last one had.
+// Each stretch between two switches is simulated by the verb and navigated as by the verb, from the
+// heading that the last one had.
 
 'use strict';
 
@@ -25,15 +25,14 @@ function showHeading(root) {
   /** What follows from the present heading on. */
   const compute = lastOnly(async () => {
     now.hold = true; // the clock stands until it is known how the heading goes on
-    const simulate = ['simulate', 'heading.yaml', '--rate', '10Hz', '--duration', `${stretch}s`, '--run', String(now.run), '-o', 'rest.csv'];
+    const simulate = ['simulate', 'heading.yaml', '--rate', '10Hz', '--duration', `${stretch}s`, '--run', String(now.run), '-o', 'rest.npy'];
     const navigate = ['navigate', 'rest.csv', '--position', '45 deg, 10 deg, 0 m', '--attitude', `0 0 ${now.heading.toFixed(6)} deg`, '--interval', '1s', '-o', 'track.csv'];
     try {
-      const log = (await bench(simulate, { 'heading.yaml': model() })).file('rest.csv');
-      const track = csvColumns((await bench(navigate, { 'rest.csv': log })).file('track.csv'));
-      Object.assign(now, { yaw: track['yaw [deg]'], from: now.at });
+      const log = (await bench(simulate, { 'heading.yaml': model() })).file('rest.npy');
+      Object.assign(now, { yaw: (await reckon(log, now.heading, 10)).heading, from: now.at });
       now.run++;
       problem.textContent = '';
-      place.replaceChildren(terminalText('# heading.yaml', model(), 'imukit ' + simulate.join(' '), 'imukit ' + navigate.map((word) => (word.includes(' ') ? `"${word}"` : word)).join(' ')));
+      place.replaceChildren(terminalText('# heading.yaml', model(), 'imukit ' + simulate.join(' ').replace('.npy', '.csv'), 'imukit ' + navigate.map((word) => (word.includes(' ') ? `"${word}"` : word)).join(' ')));
     } catch (reason) {
       problem.textContent = reason.message;
     }

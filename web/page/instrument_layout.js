@@ -34,7 +34,7 @@ function showSchematic(view, { schematic, about }) {
 function makeChart(label, signals, first, chosen, rate) {
   const id = 'chart' + label;
   const nice = (name) => name.replace(/_/g, ' ');
-  const now = element('output', { class: 'number' }), unit = element('span', {});
+  const now = element('output', { class: 'number' });
   const place = element('div', {});
   const made = { rate, now, column: () => first + Number(select.value), input: () => first === 0 && Number(select.value) === 0 };
   const select = element('select', { id, onchange: renew },
@@ -44,17 +44,17 @@ function makeChart(label, signals, first, chosen, rate) {
     if (made.chart) made.chart.end();
     made.chart = new StripChart({ label: `${nice(signal.name)} against time on the screen`, unit: signal.unit, names: made.input() ? ['output', 'input'] : ['signal'] });
     place.replaceChildren(made.chart.root);
-    unit.textContent = signal.unit === '1' ? '' : signal.unit;
+    made.unit = signal.unit === '1' ? '' : ' ' + signal.unit;
     made.sample();
   }
   // What one sample is, which at a slow pace is much less than what a reading needs.
   made.sample = (rate = made.rate) => {
     made.rate = rate;
-    const short = rate > 2000 ? ' So short a time shows single counts and pulses: nearer to real time they are means.' : '';
+    const short = rate > 2e5 ? ' So short a time shows single counts and pulses: nearer to real time they are means.' : '';
     made.help.textContent = signals[Number(select.value)].help + (made.input() ? `; dashed: the true input. A sample lasts ${timeText(1 / rate)}.${short}` : '');
   };
   made.help = element('p', { class: 'weak' });
-  made.root = element('figure', {}, element('figcaption', {}, element('label', { for: id }, label + ' '), select, ' ', now, ' ', unit), place, made.help);
+  made.root = element('figure', {}, element('figcaption', {}, element('label', { for: id }, label + ' '), select, ' ', now), place, made.help);
   renew();
   return made;
 }

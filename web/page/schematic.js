@@ -26,6 +26,7 @@ const partMoves = {
 
 function placePart({ group, move, origin }, value) {
   if (!group || !Number.isFinite(value)) return;
+  value = Math.max(-1e6, Math.min(1e6, value)); // farther away is not drawn
   if (move === 'glow') group.style.opacity = value;
   else if (move === 'flow') group.style.strokeDashoffset = value;
   else {

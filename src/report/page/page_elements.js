@@ -126,11 +126,14 @@ const imukitPage = (() => {
       .map(rule => rule.media);
   }
 
-  let conditions = null;
+  /* Drawings can have rules of their own, also such that are put into the page later. */
+  let conditions = [], darkness = null;
   function setDark(dark) {
-    conditions = conditions || darkConditions();
+    darkness = dark;
+    conditions = [...conditions, ...darkConditions()];
     conditions.forEach(media => { media.mediaText = dark ? 'screen' : 'not all'; });
   }
+  const keepDark = () => darkness !== null && setDark(darkness);
 
   /* A button that changes the page from light to dark and back. */
   function attachTheme(article) {
@@ -152,5 +155,5 @@ const imukitPage = (() => {
     article.prepend(made);
   }
 
-  return {html, button, say, attachTable, attachTheme, setDark};
+  return {html, button, say, attachTable, attachTheme, setDark, keepDark};
 })();

@@ -145,8 +145,8 @@ const imukitFigures = (() => {
       if (part) {
         for (const name of ['x', 'y']) {
           const {low, high} = part[name], all = this.data[name];
-          const least = (all.high - all.low) * (all.log ? 1e-3 : 1e-6);
-          if (high - low > least && high - low < 1e3 * (all.high - all.low))
+          const span = (high - low) / (all.high - all.low);
+          if (span > (all.log ? 1e-3 : 1e-6) && span < 8)
             Object.assign(this[name], {low, high});
         }
         this.zoomed = true;
@@ -455,6 +455,7 @@ const imukitFigures = (() => {
     }
     fresh(root, '.imukit .table').forEach(imukitPage.attachTable);
     fresh(root, '.imukit-page .imukit').forEach(imukitPage.attachTheme);
+    imukitPage.keepDark();
   }
 
   return {attach, setDark: imukitPage.setDark};

@@ -105,8 +105,7 @@ const imukitOverlay = (() => {
     const group = (label, grade) => html('optgroup', {label}, ...catalogue.sensors
       .filter(sensor => sensor.grade === grade && (sensor['rad/s'] || sensor['m/s^2']))
       .map(sensor => html('option', {value: sensor.name}, sensor.name)));
-    return html('select', {}, html('option', {value: ''}, 'a sensor …'),
-      group('Grades', true), group('Devices', false));
+    return html('select', {}, group('Grades', true), group('Devices', false));
   }
 
   /* A control above the panels of a figure; none if none of them shows Allan deviations. */
@@ -139,9 +138,9 @@ const imukitOverlay = (() => {
       show();
     });
     remove.hidden = true;
-    select.addEventListener('change', () => {
+    /* By a button, because arrow keys in a list choose all that they pass. */
+    const choose = button('Add', 'Lay the sensor over the figure', () => {
       const sensor = catalogue.sensors.find(s => s.name === select.value);
-      select.value = '';
       if (sensor)
         add(layerOfSensor(catalogue, sensor));
     });
@@ -156,8 +155,8 @@ const imukitOverlay = (() => {
       input.value = '';
     });
     figure.querySelector('.panes').before(html('div', {class: 'over'},
-      html('label', {}, 'Lay over ', select),
-      button('a file …', 'Lay over a report or what --json printed', () => input.click()),
+      html('label', {}, 'Lay over ', select), choose,
+      button('A file …', 'Lay over a report or what --json printed', () => input.click()),
       input, remove, problem));
   }
 

@@ -43,8 +43,8 @@ function showSubject(root, number) {
   renew();
   root.append(list, element('progress', { max: count, value: number, 'aria-label': 'Progress' }),
     element('h1', {}, `${number}. ${subject.title}`),
-    element('div', { class: 'columns' }, element('section', {}, subjectText(subject)), drawing),
-    showExercise(subject.exercise, () => (tourAnswered.add(number), renew())), steps());
+    element('div', { class: 'columns' }, element('section', {}, subjectText(subject)), drawing,
+      showExercise(subject.exercise, () => (tourAnswered.add(number), renew()))), steps());
   lowerIndices(root);
   const end = showTourFigure(drawing, subject.figure);
   drawing.prepend(element('p', { class: 'caption' }, subject.figure.caption));
@@ -93,10 +93,10 @@ function showExercise(exercise, done) {
     }
   }
   return element('section', { class: 'exercise' }, element('h2', {}, 'Exercise'),
-    element('p', { id: 'question' }, exercise.question),
+    element('p', { id: 'question' }, withIndices(exercise.question)),
     exercise.table ? element('pre', { tabindex: 0 }, exercise.table) : null,
-    element('form', { onsubmit: check }, element('label', { for: 'answer' }, 'Answer, with unit '), field,
-      ' ', element('button', {}, 'Check'), ' ', element('button', { type: 'button', onclick: show }, 'Show the answer')), said, answer);
+    element('form', { class: 'buttons', onsubmit: check }, element('label', { for: 'answer' }, 'Answer, with unit'), field,
+      element('button', {}, 'Check'), element('button', { type: 'button', onclick: show }, 'Show the answer')), said, answer);
 }
 
 async function answerOf({ run, files, path, unit }) {
@@ -110,7 +110,7 @@ function shownAnswer({ run, files, path, solution }, { out, quantity }) {
   const length = before < 0 ? 0 : /^[-+.\deE]*/.exec(out.slice(before))[0].length;
   mark.append(out.slice(before, before + length));
   const output = element('pre', { tabindex: 0, class: 'output' }, ...(before < 0 ? [out] : [out.slice(0, before), mark, out.slice(before + length)]));
-  requestAnimationFrame(() => (output.scrollTop = mark.offsetTop - output.offsetTop - output.clientHeight / 2));
+  requestAnimationFrame(() => (output.scrollTop = mark.offsetTop - output.clientHeight / 2));
   return [element('p', {}, element('strong', {}, quantityText(quantity)), `: ${solution}`),
     element('pre', { tabindex: 0 }, terminalLines(run, files || {})),
     element('p', {}, 'In the output at ', element('code', {}, path.join(' › ')), `, in SI units: ${quantity.value} ${quantity.unit}`), output];
@@ -126,7 +126,7 @@ function showHandout(root) {
       if (ended) return;
       status.textContent = `Subject ${i + 1} of ${tourSubjects.length}…`;
       root.append(element('h2', {}, `${i + 1}. ${subject.title}`), ...subjectText(subject), element('p', { class: 'caption' }, subject.figure.caption),
-        await handoutFigure(subject.figure), element('p', {}, element('strong', {}, 'Exercise. '), subject.exercise.question),
+        await handoutFigure(subject.figure), element('p', {}, element('strong', {}, 'Exercise. '), withIndices(subject.exercise.question)),
         ...(subject.exercise.table ? [element('pre', {}, subject.exercise.table)] : []));
     }
     lowerIndices(root);

@@ -59,7 +59,7 @@ function judged(text, { value, unit, asked }, tolerance) {
   if (number === undefined) return { right: false, say: `Write a number with its unit, such as 1.2 ${asked}.` };
   const same = (name) => name.replace(/[\s*·]/g, '') === rest.replace(/[\s*·]/g, '');
   const name = names.find(same);
-  if (!name) return { right: false, say: rest ? `The unit must be one of ${names.join(', ')}.` : `The unit is missing: ${names.join(', ')}.` };
+  if (!name) return { right: false, say: rest ? `The unit must be one of ${names.join(', ')}.` : `The unit is missing, such as ${asked}.` };
   const given = Number(number) * units[name];
   if (Math.abs(given - value) <= tolerance * Math.abs(value)) return { right: true, say: 'Right.' };
   if (Math.abs(given + value) <= tolerance * Math.abs(value)) return { right: false, say: 'The size is right, the sign is not.' };

@@ -75,7 +75,7 @@ function parseEquation(text) {
 
 /** Text in which letters with an index, "x_max", are set as such. */
 function withIndices(text) {
-  return text.split(/(?<=\p{L})_([A-Za-z0-9]+)/u).map((part, i) => (i % 2 ? element('sub', {}, part) : part));
+  return text.split(/(?<=\p{L})_([\p{L}\d]+)/u).map((part, i) => (i % 2 ? element('sub', {}, part) : part));
 }
 
 /** Without a font for mathematics indices stand on the line: the style lowers them. */

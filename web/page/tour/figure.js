@@ -47,8 +47,15 @@ class TourInstrument extends InstrumentView {
       if (this.ended) return;
       if (answer.problem) throw new Error(answer.problem);
       this.about = answer.about;
-      for (const { name, value } of this.figure.controls) await this.control(name, value, true);
-      this.layOut(await askLive('look'));
+      for (const { name, value } of this.figure.controls) {
+        if (name in inputNames) await this.expose(name, value);
+        else if (name !== 'instrument') this.design.set(name, value);
+        if (this.ended) return;
+      }
+      const begun = await askLive('change', this.designFile());
+      if (this.ended) return;
+      if (begun.problem) throw new Error(begun.problem);
+      this.layOut(begun);
       this.status.textContent = '';
       this.play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
       if (!this.playing) this.advance(1 / 60);
@@ -58,24 +65,22 @@ class TourInstrument extends InstrumentView {
   }
 
   layOut(answer) {
-    if (this.ended) return;
-    this.charts = [makeChart('Output', answer.about.outputs, 0, 0)];
+    const { outputs, signals, rate } = answer.about, named = ({ name }) => name === this.figure.curve;
+    this.charts = [signals.some(named) ? makeChart('Signal', signals, outputs.length, signals.findIndex(named), rate)
+      : makeChart('Output', outputs, 0, Math.max(0, outputs.findIndex(named)), rate)];
     this.root.prepend(this.drawing, element('p', { class: 'buttons' }, this.playButton, 'Time of the run ', this.clock), ...this.charts.map(({ root }) => root), this.slow);
     showSchematic(this, answer);
     showQuantities(this);
     this.showTerminal();
   }
 
-  /** The value of a control: the motion, or a part of the design. */
-  control(name, text, first) {
-    if (name === 'instrument') return '';
-    if (name in inputNames) return this.expose(name, text);
-    if (first && this.about.fields.find(({ path }) => path === name).value === text) return '';
-    return this.change(name, text);
-  }
-
-  renew(answer) {
-    if (this.charts.length) super.renew(answer);
+  /** The value of a control: the motion, or a part of the design. Where time is slowed a thousand
+   *  times or more, the instrument is shown as it settles with another motion. */
+  async control(name, text) {
+    if (!(name in inputNames)) return this.change(name, text);
+    const problem = await this.expose(name, text);
+    if (!problem && this.about.pace < 1e-3) this.renew(await askLive('change', this.designFile()));
+    return problem;
   }
 }
 
@@ -127,7 +132,8 @@ function showComputedFigure(root, figure) {
   });
   const inUnit = (name, text) => {
     const control = figure.controls.find((one) => one.name === name);
-    return control.choices || text.trim().endsWith(' ' + control.unit) ? '' : `Write it in ${control.unit}.`;
+    const bare = Object.values(figure.files || {}).some((file) => file.includes(`{${name}.number}`));
+    return bare && !text.trim().endsWith(' ' + control.unit) ? `Write it in ${control.unit}.` : '';
   };
   async function change(name, text) {
     const wrong = inUnit(name, text);
@@ -136,7 +142,8 @@ function showComputedFigure(root, figure) {
     await compute();
     return '';
   }
-  root.append(place, status, element('div', { class: 'controls' }, tourControls(figure.controls, change)), terminal);
+  root.append(place, status, element('div', { class: 'controls' }, tourControls(figure.controls, change)), terminal,
+    ...(figure.more ? [element('p', {}, element('a', { href: '#bench' }, figure.more))] : []));
   compute();
   return () => (ended = true);
 }
@@ -152,7 +159,7 @@ function shownResult(done, figure) {
   if (figure.animation) {
     const host = element('div', { class: 'drawn' });
     const drawing = new DOMParser().parseFromString(text('figure.svg'), 'image/svg+xml').documentElement;
-    host.attachShadow({ mode: 'open' }).append(element('style', {}, 'svg { display: block; width: 100%; height: auto; }'), document.importNode(drawing, true));
+    host.attachShadow({ mode: 'open' }).append(element('style', {}, 'svg { display: block; width: 100%; height: auto; } @media screen and (prefers-color-scheme: dark) { svg { filter: invert(.9) hue-rotate(180deg); } }'), document.importNode(drawing, true));
     return host;
   }
   if (figure.readings) return readingsTable(done.out);

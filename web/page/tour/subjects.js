@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The subjects of the tour: texts, equations as typed (equation.js), figures (figure.js), exercises.
 //
-// figure: { live, controls } an instrument that runs; { run, files, controls, show | animation |
+// figure: { live, curve, controls } an instrument that runs; { run, files, controls, show | animation |
 // readings } commands, with {name} for the value of a control and {name.number} for its number alone, and what of their output is shown.
 // exercise: the number is at `path` of the JSON that the last command prints; `unit` is the unit
 // asked for, `tolerance` relative.
@@ -19,7 +19,7 @@ const tourSubjects = [
     letters: 'ω angular rate, θ angle; ω_E rate of the Earth, 15.04 deg/h; ω_v its vertical part at the latitude φ.',
     figure: {
       caption: 'Choose a kind and turn it.',
-      live: 'rate_gyro', names: { 'spinning wheel': 'rate_gyro', light: 'ring_laser', vibration: 'tuning_fork' },
+      live: 'rate_gyro', curve: 'beat_frequency', names: { 'spinning wheel': 'rate_gyro', light: 'ring_laser', vibration: 'tuning_fork' },
       controls: [{ name: 'instrument', label: 'Kind', choices: 'spinning wheel|light|vibration', value: 'spinning wheel' }, tourRate('20 deg/s')],
     },
     exercise: {
@@ -36,7 +36,7 @@ const tourSubjects = [
     letters: 'H angular momentum, C moment of inertia about the spin axis, Ω speed of the wheel [rad/s], M torque.',
     figure: {
       caption: 'The gimbals lag behind the case by the angle that it turns: the wheel stays.',
-      live: 'free_gyro',
+      live: 'free_gyro', curve: 'outer_reading',
       controls: [tourRate('5 deg/s', 20), { name: 'spin.rate', label: 'Speed of the wheel', unit: 'rpm', minimum: 5000, maximum: 30000, value: '22550 rpm' }],
     },
     exercise: {
@@ -72,7 +72,7 @@ const tourSubjects = [
     letters: 'Ω rate, N turns of area A, L length of the fibre, D diameter of the coil, λ wavelength and c speed of light in vacuum.',
     figure: {
       caption: 'The two waves, the fringe, and the loop. Time is slowed down.',
-      live: 'fibre_optic',
+      live: 'fibre_optic', curve: 'feedback_rate',
       controls: [tourRate('10 deg/s', 40), { name: 'coil.length', label: 'Length of the fibre', unit: 'm', minimum: 100, maximum: 1000, value: '1000 m' }],
     },
     exercise: {
@@ -106,11 +106,11 @@ const tourSubjects = [
     title: 'Coriolis effect',
     text: ['Seen from a frame that turns, a moving mass is accelerated sideways, by twice the rate times its speed. A vibratory gyro uses this. It swings a mass to and fro along the drive axis, at resonance and with an amplitude that a control holds. A rate about a second axis then pushes the mass along the third one, in step with its speed. The motion along this sense axis, or the force that suppresses it, is the reading.',
       'The effect is small: at one degree per second the mass of the default fork moves by 13 pm, a tenth of an atom. Springs that are not quite at right angles also move it, a quarter of a cycle earlier or later. This quadrature is often a hundred times the signal. Demodulation with the right phase rejects it; a phase error lets a part of it leak into the bias.'],
-    equations: ['a⃗ = -2 ω⃗ × v⃗', 'y_0/Ω = (2 k x_0 ω_d)/|ω_s^2 - ω_d^2|'],
+    equations: ['a⃗ = -2 ω⃗ × v⃗', 'y_0/Ω = (2 k x_0 ω_d)/(|ω_s^2 - ω_d^2|)'],
     letters: 'a Coriolis acceleration in the frame of the case, v speed in it; x_0 and y_0 amplitudes of drive and sense motion, ω_d and ω_s their resonances (far apart compared with their widths), k = 1 for a mass that moves as a whole.',
     figure: {
       caption: 'The sense motion is drawn much larger than it is.',
-      live: 'tuning_fork',
+      live: 'tuning_fork', curve: 'sense_displacement',
       controls: [tourRate('50 deg/s', 150), { name: 'quadrature', label: 'Quadrature', unit: 'deg/s', minimum: -200, maximum: 200, value: '20 deg/s' }],
     },
     exercise: {
@@ -126,10 +126,10 @@ const tourSubjects = [
     equations: ['y_0/Ω ≈ (k x_0)/(2 π Δf)', 'f_b ≈ 0.54 Δf', 'f_b = f_s/(2 Q)'],
     letters: 'Δf split of the resonances, f_b bandwidth (3 dB); the first two lines are for a split that is small compared with the frequency and large compared with the width of the resonance, the third one for no split; Q quality factor.',
     figure: {
-      caption: 'Path of the mass: drive across, sense motion up, in very different units. Quadrature tilts the line, the rate opens it to an ellipse.',
-      files: { 'mine.yaml': 'imukit: 1\ninstrument: tuning_fork\nsense: {split: {split}}\n' },
-      run: ['physics mine.yaml --no-noise --rate "{rate}" --view 3 --animate figure.svg'], animation: true,
-      controls: [tourRate('100 deg/s', 150), { name: 'split', label: 'Split', unit: 'Hz', minimum: 200, maximum: 2000, value: '1000 Hz' }],
+      caption: 'Both arrangements, and what the split does to the sense motion.',
+      live: 'tuning_fork', curve: 'sense_displacement',
+      controls: [{ name: 'arrangement', label: 'Sense motion', choices: 'in-plane|out-of-plane', value: 'in-plane' }, tourRate('100 deg/s', 150),
+        { name: 'sense.split', label: 'Split', unit: 'Hz', minimum: 200, maximum: 2000, value: '1000 Hz' }],
     },
     exercise: {
       question: 'Both resonances are at 14 kHz (no split), Q of the sense motion is 1000, the loop open. What is the bandwidth, in Hz?',
@@ -164,7 +164,7 @@ const tourSubjects = [
       'Sensitivity, or scale factor, is the change of the output per change of the input: the slope of a line through the points of a test. Linearity is the largest deviation from such a line, in per cent of full scale. A report should say which line it is: that of least squares, or the one whose largest deviation is smallest. All of these figures hold for a range, a temperature and an averaging time, which belong to the number.'],
     equations: ['K = (Δy)/(Δu)', 'linearity = (max |y - (y_0 + K u)|)/y_FS'],
     letters: 'y output, u input, K sensitivity, y_0 + K u the fitted line, y_FS output at full scale.',
-    figure: { caption: 'Each shot is a reading of a gyro at rest.', bench: 'target' },
+    figure: { caption: 'Each shot is the reading of two gyros at rest.', bench: 'target' },
     exercise: {
       question: 'A rate gyro has a wheel of 0.001 kg m^2/s and a torsion bar of 0.08 N m/rad. What is its sensitivity, angle of the gimbal per rate, in mrad/(deg/s)?',
       unit: 'mrad/(deg/s)', tolerance: 0.01, run: ['physics rate_gyro --json'], path: ['result', 'derived', 'gimbal angle per rate'],
@@ -175,10 +175,11 @@ const tourSubjects = [
     title: 'Bias',
     text: ['Bias is what a sensor reads without an input. It has three parts. The fixed part is the same in each run, changes with temperature, and is taken out by calibration. The second part is constant during a run and different in the next: data sheets call it repeatability or turn-on bias, some books bias stability. The third part moves during the run: bias instability. In the strict sense this is flicker noise, whose Allan deviation is flat at 0.664 of its strength B; often it is modelled as a random walk instead, which is a different process.',
       'The bias of the gyros is the main error of many inertial navigators. It tilts the computed level, gravity then seems to be an acceleration, and the error grows with the cube of time. The Schuler oscillation, of 84.4 minutes, ends this growth; later the error increases about linearly.'],
-    equations: ['b = b_fixed + b_run + b(t)', 'Δp = (1/6) g b t^3'],
+    equations: ['b = b_fixed + b_run + b(t)', 'Δp = (g b t^3)/6'],
     letters: 'Δp horizontal error by the bias b [rad/s] of a level gyro in the first minutes, g gravity.',
     figure: {
       caption: 'Error growth of a unit at rest, by its run-to-run biases alone.',
+      more: 'A heading with and without a bias: the bench',
       files: { 'unit.yaml': 'imukit: 1\nname: unit\ngyro:\n  bias: {repeatability: {gyro}}\naccel:\n  bias: {repeatability: {accel}}\n' },
       run: ['drift unit.yaml --duration {time} --report report.html'], show: 'Horizontal error',
       controls: [{ name: 'gyro', label: 'Gyro bias, 1 sigma', unit: 'deg/h', minimum: 0.001, maximum: 10, logarithmic: true, value: '0.01 deg/h' },
@@ -241,10 +242,11 @@ const tourSubjects = [
     title: 'Noise',
     text: ['What changes without a cause that is known is noise. Several kinds are present together, and they differ in their memory. White noise has none: in a rate it is called angle random walk, because the angle, its integral, wanders off with the root of time; in an acceleration, velocity random walk. Quantization rounds the integral and fades fastest by averaging. Flicker noise, the bias instability, cannot be averaged away. The random walk of a rate grows without end.',
       'The Allan deviation tells them apart. It compares neighbouring means over a time τ: on logarithmic axes quantization has the slope −1, white noise −½, flicker 0, a random walk +½. Noise with a correlation time is a hump, a vibration a row of ripples. A fit of all the terms to the whole record says more than readings at single points of the curve.'],
-    equations: ['σ^2(τ) = 3 Q^2/τ^2 + N^2/τ + 0.4413 B^2 + K^2 τ/3', 'σ_θ = N √(t)'],
+    equations: ['σ^2(τ) = (3 Q^2)/τ^2 + N^2/τ + 0.4413 B^2 + (K^2 τ)/3', 'σ_θ = N √(t)'],
     letters: 'σ(τ) Allan deviation; Q quantization, N angle random walk, B bias instability, K rate random walk; σ_θ scatter of the angle by N after the time t.',
     figure: {
       caption: 'Three hours of a simulated gyro. Move a strength and see which part of the curve moves.',
+      more: 'Kinds of noise to see and to hear: the bench',
       files: { 'gyro.yaml': 'imukit: 1\nname: gyro\ngyro:\n  direction: [1 0 0]\n  noise:\n    angle_random_walk: {white}\n    bias_instability: {flicker}\n    rate_random_walk: {walk}\n' },
       run: ['simulate gyro.yaml --rate 10Hz --duration 3h --no-earth -o log.csv', 'allan log.csv --report report.html'], show: 'Gyros',
       controls: [{ name: 'white', label: 'Angle random walk N', unit: 'deg/sqrt(h)', minimum: 0.01, maximum: 10, logarithmic: true, value: '0.3 deg/sqrt(h)' },
@@ -263,7 +265,7 @@ const tourSubjects = [
     title: 'Gyro: g-sensitivity',
     text: ['A gyro should not feel forces. But a wheel whose centre of mass lies beside its axis is turned by its weight, so it drifts in proportion to the force: g-sensitivity. In a Coriolis gyro, a force displaces two masses that are not quite equal by different amounts, and this looks like a rate. In the model the matrix G1 multiplies the specific force.',
       'A suspension yields, and if it yields more along one axis than along another, a force first displaces the mass and then turns it by the displacement. The effect is a product of two components of the force: g²-sensitivity, or anisoelasticity. It does not cancel under vibration: shaking at 45 degrees between these axes makes a steady bias. Optical gyros have no such mass, and hardly any of these errors.'],
-    equations: ['δω⃗ = G_1 f⃗ + G_2 q(f⃗)', 'D = m d/H', 'D_xz = m^2 (C_z - C_x)/H'],
+    equations: ['δω⃗ = G_1 f⃗ + G_2 q(f⃗)', 'D = (m d)/H', 'D_xz = (m^2 (C_z - C_x))/H'],
     letters: 'q(f) the six products of the components of f; D drift per force for a mass m that is off by d, with the momentum H; D_xz drift per product of forces along x and z, C displacement per force.',
     figure: {
       caption: 'No rate at all, only a force: the reading is error.',
@@ -281,7 +283,7 @@ const tourSubjects = [
     title: 'Accelerometer: axis offset',
     text: ['The three accelerometers of a unit cannot all be at one point. Each has a lever arm from the point to which its reading should belong. When the unit turns, every other point is accelerated: towards the axis by the square of the rate times the distance, and sideways by the angular acceleration. An accelerometer that is off along its own axis feels the first part; a steady turn already makes it wrong.',
       'Mind the sign. The acceleration is inwards, so a sensor at +x reads less than the centre, and the correction adds the same amount. One centimetre at 100 degrees per second is 3 mg, large for a good unit. Angular vibration makes it a constant error, as a square does not cancel. The lever arms are found by spinning the unit, and taken out with the rates of the gyros.'],
-    equations: ['f_x = f_O - (ω_y^2 + ω_z^2) r_x + (ω_x ω_y - α_z) r_y + (ω_x ω_z + α_y) r_z'],
+    equations: ['f_x = f_O - (ω_y^2 + ω_z^2) r_x', '+ (ω_x ω_y - α_z) r_y + (ω_x ω_z + α_y) r_z'],
     letters: 'f_x reading of the x accelerometer at the place r, f_O force along x at the reference point; ω angular rate, α angular acceleration.',
     figure: {
       caption: 'Readings of a unit that turns about its vertical axis; the x accelerometer is off the centre.',
@@ -326,6 +328,7 @@ const tourSubjects = [
     letters: 'b bias that remains after calibration, by which a unit is sorted; b_run its repeatability, B its bias instability (an uncertain fixed part would be a third square).',
     figure: {
       caption: 'Classes, technologies, applications and prices. The unit chosen is marked.',
+      more: 'An hour with each grade: the bench',
       run: ['grade {grade} --report report.html'], show: '{map}',
       controls: [{ name: 'map', label: 'Map', choices: 'Gyros|Accelerometers|Price of a whole unit|Price of one gyro', value: 'Gyros' },
         { name: 'grade', label: 'Unit', choices: 'strategic|navigation|tactical|AHRS|control', value: 'navigation' }],

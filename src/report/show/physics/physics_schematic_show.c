@@ -17,10 +17,10 @@ void imki_show_schematic(const imk_physics_shown *p, imk_result *result)
     if (!schematic)
         return;
     imk_status status = imk_schematic_animated(settings, 0, 0, NULL, &svg, &size, &error);
-    if (status != IMK_OK)
+    if (status != IMK_OK && status != IMK_ERROR_MEMORY)
         status = imk_schematic_svg(settings->instrument, settings->design, &svg, &size, &error);
-    if (status != IMK_OK)
-        return;
-    imk_result_drawing(result, svg, schematic->description);
-    free(svg);
+    if (status == IMK_OK || status == IMK_ERROR_MEMORY)
+        imk_result_drawing(result, status == IMK_OK ? svg : NULL, schematic->description);
+    if (status == IMK_OK)
+        free(svg);
 }
