@@ -31,7 +31,17 @@ move() {
     "$imukit" physics "$@" --animate "$images/physics-$name.svg"
 }
 
+# schematic NAME: docs/images/schematic-NAME.svg by --view, which a test compares
+schematic() {
+    case schematic-$1 in *"$only"*) ;; *) return 0 ;; esac
+    "$imukit" physics "$1" --view -o "$images/schematic-$1.svg"
+}
+
 trap 'rm -f "$images/.draw.log"' EXIT
+
+for name in $("$imukit" physics --list | sed -n '2,/^$/s/ .*//p'); do
+    schematic "$name"
+done
 
 draw free_gyro-the-gimbals-stay-behind free_gyro --view "the gimbals"
 draw free_gyro-nutation free_gyro --view nutation

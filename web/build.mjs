@@ -25,10 +25,11 @@ const order = ['log', 'device', 'calibrate', 'grades', 'instruments', 'bench', '
 screens.sort((a, b) => order.indexOf(a.slice(0, -3)) - order.indexOf(b.slice(0, -3)));
 // Scripts that others use when they begin come first; those of the worker are apart.
 const first = ['elements.js', 'engine.js'], apart = ['wasi.js', 'live.js', 'unpack.js', 'worker.js', 'app.js'];
-const shared = readdirSync(here('page')).filter((name) => name.endsWith('.js') && !first.includes(name) && !apart.includes(name)).sort();
+const inFolder = (folder) => readdirSync(here('page/' + folder)).filter((name) => name.endsWith('.js')).sort().map((name) => folder + name);
+const shared = inFolder('').filter((name) => !first.includes(name) && !apart.includes(name));
 const script = [readFileSync(wasm.replace(/[^/]*$/, 'page_script.js'), 'utf8'), ...first.map((name) => text('page/' + name)),
   ...shared.map((name) => text('page/' + name)), 'const screens = {};',
-  ...screens.map((name) => text('page/screens/' + name)), text('page/app.js'), 'begin();'].map(lean).join('\n');
+  ...screens.map((name) => text('page/screens/' + name)), ...inFolder('tour/').map((name) => text('page/' + name)), text('page/app.js'), 'begin();'].map(lean).join('\n');
 const worker = [text('page/wasi.js'), text('page/live.js'), text('page/unpack.js'), text('page/worker.js')].map(lean).join('\n');
 const hash = createHash('sha256').update(script).digest('base64');
 const policy = [`default-src 'none'`, `script-src 'sha256-${hash}' 'wasm-unsafe-eval'`, `worker-src blob:`,

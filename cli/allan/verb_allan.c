@@ -136,7 +136,9 @@ static int parse_tau(const char *text, imk_allan_log_settings *settings, double 
     return code;
 }
 
-static void write_rows(const imk_allan_log *a, size_t channel, size_t k, imk_output_file *file)
+/* @param log  begins each line; "": nothing */
+static void write_rows(const imk_allan_log *a, const char *log, size_t channel, size_t k,
+                       imk_output_file *file)
 {
     const imk_allan_statistic statistic = a->settings.statistic[k];
     const imk_allan_curve *curve = &a->curve[channel][k];
@@ -145,7 +147,8 @@ static void write_rows(const imk_allan_log *a, size_t channel, size_t k, imk_out
         const imk_allan_point *point = &curve->point[i];
         const double values[] = {curve->tau[i], point->deviation / unit.scale,
                                  point->lower / unit.scale, point->upper / unit.scale};
-        imk_output_file_print(file, "%s", imk_even_record_column(&a->record, channel)->name);
+        imk_output_file_print(file, "%s%s%s", log, *log ? "," : "",
+                              imk_even_record_column(&a->record, channel)->name);
         for (int j = 0; j < 4; j++) {
             char text[IMK_DECIMAL_SIZE];
             text[imk_decimal_shortest(values[j], text)] = '\0';
@@ -159,29 +162,50 @@ static void write_rows(const imk_allan_log *a, size_t channel, size_t k, imk_out
     }
 }
 
-static int write_csv(const imk_allan_log *a, const char *output)
+static int write_csv(const imk_allan_shown *shown, const char *output)
 {
     imk_output_file *file;
     imk_error error;
+    const bool several = shown->count > 1;
     if (imk_output_file_open(output, &file, &error) != IMK_OK)
         return command_error(&error, NULL);
-    imk_output_file_print(file, "channel,tau [s],deviation [unit],lower,upper,edf,count,unit,"
-                                "statistic,noise,used\n");
-    for (size_t c = 0; c < a->record.count; c++)
-        for (size_t k = 0; k < a->settings.statistic_count; k++)
-            write_rows(a, c, k, file);
+    imk_output_file_print(file,
+                          "%schannel,tau [s],deviation [unit],lower,upper,edf,count,unit,"
+                          "statistic,noise,used\n",
+                          several ? "log," : "");
+    for (size_t l = 0; l < shown->count; l++)
+        for (size_t c = 0; c < shown->log[l]->record.count; c++)
+            for (size_t k = 0; k < shown->log[l]->settings.statistic_count; k++)
+                write_rows(shown->log[l], several ? shown->label[l] : "", c, k, file);
     if (imk_output_file_commit(file, &error) != IMK_OK)
         return command_error(&error, NULL);
     return -1;
 }
 
-static int show(const imk_allan_log *a, const allan_options *o, const char *path)
+static const char *base_name(const char *path)
 {
-    const int code = o->output ? write_csv(a, o->output) : -1;
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* The names without folders, if all differ. */
+static void label_logs(imk_allan_shown *shown)
+{
+    bool same = false;
+    for (size_t l = 0; l < shown->count; l++)
+        for (size_t q = 0; q < l; q++)
+            same = same || strcmp(base_name(shown->name[l]), base_name(shown->name[q])) == 0;
+    for (size_t l = 0; l < shown->count; l++)
+        shown->label[l] = same ? shown->name[l] : base_name(shown->name[l]);
+}
+
+static int show(const imk_allan_shown *shown, const allan_options *o)
+{
+    const int code = o->output ? write_csv(shown, o->output) : -1;
     if (code >= 0)
         return code;
     imk_result *result = show_begin("allan");
-    imk_show_allan_log(a, path, result);
+    imk_show_allan_logs(shown, result);
     imk_result_for(result, IMK_FOR_PAGE);
     show_origin(result);
     const show_options options = {
@@ -203,31 +227,46 @@ static int tell(const allan_options *o, const char *path, const imk_allan_log *a
     return command_misused("--tau %s: %s", o->tau, text);
 }
 
-static int analyse(const allan_options *o, const char *path, const imk_allan_log_settings *settings)
+static int analyse(const allan_options *o, const char *path, const imk_allan_log_settings *settings,
+                   imk_allan_log **a)
 {
     imk_log_reader *reader;
     int code = log_input_open(&o->log, path, false, &reader);
     if (code >= 0)
         return code;
-    imk_allan_log *a;
     imk_error error;
     threaded_job t;
     threaded_job_begin(&t, path, o->threads.value);
     const imk_record_source source = imk_log_source(reader);
-    const imk_status status = imk_allan_log_run(&source, settings, &t.job, &a, &error);
+    const imk_status status = imk_allan_log_run(&source, settings, &t.job, a, &error);
     threaded_job_end(&t);
     imk_log_close(reader);
-    code = tell(o, path, a, status, &error);
+    return tell(o, path, *a, status, &error);
+}
+
+static int analyse_all(const allan_options *o, const char *const *paths,
+                       const imk_allan_log_settings *settings)
+{
+    imk_allan_log *log[IMK_ALLAN_LOGS_MAX] = {NULL};
+    imk_allan_shown shown = {.count = 0};
+    int code = -1;
+    for (; code < 0 && shown.count < IMK_ALLAN_LOGS_MAX && paths[shown.count]; shown.count++) {
+        shown.name[shown.count] = paths[shown.count];
+        code = analyse(o, paths[shown.count], settings, &log[shown.count]);
+        shown.log[shown.count] = log[shown.count];
+    }
+    label_logs(&shown);
     if (code < 0)
-        code = show(a, o, path);
-    imk_allan_log_free(a);
+        code = show(&shown, o);
+    for (size_t l = 0; l < shown.count; l++)
+        imk_allan_log_free(log[l]);
     return code;
 }
 
 static int run(int count, char **words)
 {
     allan_options o = {.confidence = 0.95, .log = {.gaps = IMK_GAPS_KEEP, .missing_allowed = true}};
-    const char *operands[OPERANDS_MAX];
+    const char *operands[IMK_ALLAN_LOGS_MAX + 1] = {NULL};
     imk_allan_log_settings settings = imk_allan_log_default();
     double *times = NULL;
     int code = options_parse(&allan_verb, count, words, &o, operands);
@@ -245,7 +284,7 @@ static int run(int count, char **words)
     settings.greenhall_riley = o.edf == 1;
     settings.bias = (imk_allan_bias_removal)o.bias;
     if (code < 0)
-        code = analyse(&o, operands[0], &settings);
+        code = analyse_all(&o, operands, &settings);
     free(times);
     return code;
 }
@@ -253,9 +292,9 @@ static int run(int count, char **words)
 const verb allan_verb = {
     .name = "allan",
     .summary = "Allan family deviations of a log with confidence intervals",
-    .operands = "LOG",
+    .operands = "LOG...",
     .operands_minimum = 1,
-    .operands_maximum = 1,
+    .operands_maximum = IMK_ALLAN_LOGS_MAX,
     .examples = {{"imukit allan static.csv --plot allan.svg",
                   "every gyro and accelerometer column of a log at rest, as a table and a plot"},
                  {"imukit allan phase.txt --columns x --rate 1Hz --type phase -o adev.csv",
@@ -263,7 +302,9 @@ const verb allan_verb = {
     .description =
         "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst){, "
         "or logs}; - is standard input. Without gyro and accelerometer columns every other column "
-        "is analysed.\n\nChoice of the statistic: oadev for a first look at a sensor; mdev or pdev "
+        "is analysed. Several logs are shown side by side: a panel and a table for each channel, "
+        "with a colour and a column for each log.\n\nChoice of the statistic: oadev for a first "
+        "look at a sensor; mdev or pdev "
         "to distinguish quantization from other fast noise; ohdev when the rate drifts linearly; "
         "totdev, htot and theo1 for tau near the length of the log; tdev (in units of the column "
         "times s) for the scatter of the integral; haar as published for wavelet methods. \n\nRows "

@@ -22,7 +22,7 @@ static int check_request(const identify_options *o)
     if (o->runs && o->method == METHOD_ALLAN)
         return command_misused("--method allan fits one log at a time; the joint estimate of "
                                "--runs needs --method likelihood");
-    if (o->devices && (o->output || o->into || o->name || o->twin || o->plot || o->truth))
+    if (o->devices && (o->output || o->into || o->name || o->twin || o->truth))
         return command_misused(
             "--devices compares sensors and makes no model: leave out %s, or identify each log "
             "alone",
@@ -30,7 +30,6 @@ static int check_request(const identify_options *o)
             : o->into ? "--into"
             : o->name ? "--name"
             : o->twin ? "--twin"
-            : o->plot ? "--plot"
                       : "--truth");
     return -1;
 }

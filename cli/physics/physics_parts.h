@@ -49,5 +49,9 @@ void physics_show_views(const physics *p, imk_result *result);
 int physics_show_view_figure(const physics *p, imk_result *result);
 /* Write a view of one signal against another, in motion. */
 int physics_animate(const physics *p, const char *path);
+/* Does --view ask for the schematic, which is no view of signals? */
+bool physics_asks_schematic(const physics_options *o);
+/* Write the schematic in motion. */
+int physics_draw_schematic(const physics *p, const char *path);
 
 #endif

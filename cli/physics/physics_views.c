@@ -3,8 +3,11 @@
 #include "physics_parts.h"
 
 #include "imukit/figure_file.h"
+#include "imukit/schematic.h"
 
+#include <math.h>
 #include <string.h>
+#include <strings.h>
 
 /* With the duration and rate that were asked for. */
 static int make_view(const physics *p, size_t index, imk_physics_view *v)
@@ -118,4 +121,32 @@ int physics_animate(const physics *p, const char *path)
     const imk_status status = imk_animation_write(&animation, path, &error);
     imk_physics_view_free(&v);
     return status == IMK_OK ? -1 : command_error(&error, NULL);
+}
+
+/* ---- the schematic --------------------------------------------------------------------------- */
+
+bool physics_asks_schematic(const physics_options *o)
+{
+    return o->view && strcasecmp(o->view, "schematic") == 0;
+}
+
+int physics_draw_schematic(const physics *p, const char *path)
+{
+    const imk_instrument *instrument = p->settings.instrument;
+    const imk_schematic *schematic = imk_schematic_of(instrument);
+    imk_error error = {.status = IMK_OK};
+    if (!schematic)
+        return command_failed("the %s has no schematic", instrument->title);
+    const double pace = imk_schematic_pace(schematic, p->settings.design);
+    const double seconds = p->settings.view_duration / pace; /* 0: as the schematic states */
+    const imk_status status = imk_schematic_write(&p->settings, seconds, 0, path, &error);
+    if (status == IMK_OK)
+        return -1;
+    if (status == IMK_ERROR_RANGE && strcmp(error.field, "seconds") == 0)
+        return command_misused("--duration: %g s last %.3g s in the drawing, which is %.3g times "
+                               "as slow; expected %.3g s to %.3g s",
+                               p->settings.view_duration, seconds, 1 / pace, pace, 3600 * pace);
+    if (status == IMK_ERROR_OPEN || status == IMK_ERROR_WRITE)
+        return command_error(&error, NULL);
+    return physics_refused(p, &error);
 }

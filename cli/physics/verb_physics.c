@@ -68,7 +68,7 @@ static const option run_option_table[] = {
 static const option output_option_table[] = {
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE",
      .help = "the log (.csv, also .gz, .zst{, or written}; default: standard output), the model of "
-             "--reduce, or the design of --show"},
+             "--reduce, the design of --show, or the drawing of --view"},
     {"signals", OPTION_OUTPUT, AT(signals), .value = "FILE.csv",
      .help = "write the internal signals against time"},
     {"signal-rate", OPTION_QUANTITY, AT(signal_rate), .value = "RATE", .unit = "Hz",
@@ -77,8 +77,10 @@ static const option output_option_table[] = {
     PLOT_OPTION(AT(plot),
                 "draw the outputs of the run against time (with --sine also against the input), or "
                 "the results of --sweep; without either, the views of the instrument"),
-    {"view", OPTION_TEXT, AT(view), .value = "VIEW",
-     .help = "the view for --plot: its number, or the beginning of its title"},
+    {"view", OPTION_TEXT, AT(view), .value = "[VIEW]", .alone = "schematic",
+     .help = "without VIEW, or with schematic: write the labelled drawing of the instrument, in "
+             "motion, to -o FILE.svg or standard output; else the view for --plot: its number, or "
+             "the beginning of its title"},
     {"animate", OPTION_OUTPUT, AT(animate), .value = "FILE.svg",
      .help = "draw a view of one signal against another as an animation: the view of --view, or "
              "else the first"},
@@ -87,6 +89,36 @@ static const option output_option_table[] = {
 };
 
 /* ---- checks ---------------------------------------------------------------------------------- */
+
+/* The schematic is a drawing of its own. */
+static int check_schematic(const physics_options *o, const char *operand)
+{
+    const char *other = o->plot                ? "plot"
+                        : o->animate           ? "animate"
+                        : o->report            ? "report"
+                        : o->signals           ? "signals"
+                        : o->json              ? "json"
+                        : o->list              ? "list"
+                        : o->show              ? "show"
+                        : o->reduce            ? "reduce"
+                        : o->sweep             ? "sweep"
+                        : !isnan(o->view_rate) ? "output-rate"
+                                               : NULL;
+    if (!operand)
+        return command_misused("an operand is missing: imukit physics INSTRUMENT --view; imukit "
+                               "physics lists the instruments");
+    if (other)
+        return command_misused("--view without a VIEW writes the schematic and nothing else: leave "
+                               "--%s out%s",
+                               other,
+                               o->report ? ", or --view: the page has the schematic at its top"
+                               : o->plot || o->animate ? ", or name a view"
+                                                       : "");
+    if (o->output && strcmp(o->output, "-") != 0 && !imk_has_ending(o->output, ".svg"))
+        return command_misused("-o %s: the schematic is an SVG; expected a name ending in .svg",
+                               o->output);
+    return -1;
+}
 
 static int check_tasks(const physics_options *o, const char *operand)
 {
@@ -98,6 +130,9 @@ static int check_tasks(const physics_options *o, const char *operand)
         return command_misused("an operand is missing: imukit physics %s; imukit physics lists the "
                                "instruments",
                                physics_verb.operands);
+    if (!operand && o->view && imk_instrument_find(o->view))
+        return command_misused("--view %s: the instrument stands before: imukit physics %s --view",
+                               o->view, o->view);
     if (o->show && (models || runs || o->plot || o->report || o->animate || o->json))
         return command_misused("--show prints the design and nothing else");
     if (o->reduce && !o->sweep && runs)
@@ -258,6 +293,10 @@ static int do_task(const physics *p)
 {
     const physics_options *o = p->options;
     imk_error error;
+    if (physics_asks_schematic(o)) {
+        const int failed = physics_draw_schematic(p, o->output ? o->output : "-");
+        return failed < 0 ? EXIT_DONE : failed;
+    }
     if (o->show && o->json && !o->output)
         return command_misused("--show and --json cannot both go to standard output: add -o "
                                "DESIGN.yaml, or leave --show out");
@@ -362,7 +401,8 @@ static int run(int count, char **words)
     }
     if (isnan(o.signal_rate))
         o.signal_rate = o.output_rate;
-    code = check_tasks(&o, operands[0]);
+    code = physics_asks_schematic(&o) ? check_schematic(&o, operands[0])
+                                      : check_tasks(&o, operands[0]);
     if (code < 0)
         code = check_numbers(&o);
     if (code >= 0)

@@ -5,6 +5,8 @@
 #include "command.h"
 #include "file_clash.h"
 
+#include "imukit/names.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -288,9 +290,10 @@ static int take_option(const verb *v, int count, char **words, int *index, void 
     if (o->kind == OPTION_FLAG && value)
         return command_misused("--%s takes no value", o->name);
     if (o->kind != OPTION_FLAG && !value) {
-        if (*index + 1 >= count)
+        const bool follows = *index + 1 < count && !(o->alone && words[*index + 1][0] == '-');
+        if (!follows && !o->alone)
             return command_misused("--%s needs a value: --%s %s", o->name, o->name, o->value);
-        value = words[++*index];
+        value = follows ? words[++*index] : o->alone;
     }
     return set_value(o, group, value, settings);
 }
@@ -318,6 +321,18 @@ static int take_stdout(const verb *v, const void *settings, const char *name)
                  : -1;
 }
 
+/* A report is a page, whatever the name of its file says. */
+static int check_report(const char *path)
+{
+    if (!imk_has_ending(path, ".pdf"))
+        return -1;
+    return command_misused(
+        "--report %s: a report is a page, FILE.html; a browser prints it as PDF: "
+        "chromium --headless --no-pdf-header-footer --print-to-pdf=FILE.pdf "
+        "FILE.html",
+        path);
+}
+
 /* At most one output goes to standard output, where a figure on the terminal goes, too. */
 static int check_stdout(const verb *v, const void *settings)
 {
@@ -328,7 +343,9 @@ static int check_stdout(const verb *v, const void *settings)
             const option *o = &v->groups[g].options[i];
             const void *at = (const char *)settings + v->groups[g].offset + o->offset;
             const char *path = o->kind == OPTION_OUTPUT ? *(const char *const *)at : NULL;
-            if (path && strcmp(path, "-") == 0)
+            if (path && strcmp(o->name, "report") == 0)
+                code = check_report(path);
+            if (code < 0 && path && strcmp(path, "-") == 0)
                 code = take_stdout(v, settings, o->name);
             json = json || (strcmp(o->name, "json") == 0 && *(const bool *)at);
             drawn = drawn || (path && strcmp(o->name, "plot") == 0 && strcmp(path, "term") == 0);

@@ -51,6 +51,8 @@ typedef struct option {
                             or "positive", which refuses 0 and less, or "not negative";
                             OPTION_FRACTION: "0.1..0.9" */
     const char *help;    /* a clause; see `description` */
+    const char *alone;   /* OPTION_TEXT: its value when none follows, only another option or
+                            nothing; NULL: a value must follow */
 } option;
 
 typedef struct option_group {

@@ -58,8 +58,9 @@ static void main_manual(void)
     for (size_t i = 0; i < VERB_COUNT; i++)
         printf(".TP\n.BR imukit\\-%s (1)\n%s\n", verbs[i]->name, verbs[i]->summary);
     fputs(".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nno colours when set\n.TP\n.B TMPDIR\ndirectory where "
-          "gnuplot draws a figure before it is put in place, and where a copy of a pipe is kept "
-          "that is read twice\n.TP\n.B IMUKIT_GNUPLOT_SECONDS\nhow long gnuplot may take for a "
+          "a program draws a figure before it is put in place, and where a copy of a pipe is kept "
+          "that is read twice\n.TP\n.B IMUKIT_DRAWING_SECONDS\nhow long gnuplot or rsvg-convert "
+          "may take for a "
           "figure; default 120\n",
           stdout);
 }

@@ -42,7 +42,7 @@ typedef struct imk_region {
     bool dashed; /**< outline of dashes, for limits that are not certain */
 } imk_region;
 
-/** Where the key of a panel stands. */
+/** Where the key of a panel stands. A key that would hide something in each corner goes below. */
 typedef enum imk_key_place {
     IMK_KEY_UPPER = 0, /**< in the upper right corner, or in another corner where it hides much
                           less; if the figure has one panel, beside the axes */

@@ -121,6 +121,11 @@ IMK_API void imk_result_break(imk_result *result);
 IMK_API void imk_result_animation(imk_result *result, const imk_animation *animation,
                                   const char *caption);
 
+/** Add a drawing to the page, the SVG text of imk_schematic_svg() or imk_schematic_animated();
+ *  nothing on the terminal.
+ *  @param svg  NULL: there was no memory for it, which the result remembers */
+IMK_API void imk_result_drawing(imk_result *result, const char *svg, const char *caption);
+
 /** A table, filled row by row; the first row is the header. A table without rows is not shown. */
 typedef struct imk_table imk_table;
 /** Begin a table.

@@ -22,6 +22,8 @@
  *      flow       style stroke-dashoffset = v     a dashed line moves along itself [px]
  *      glow       style opacity = v               0 … 1
  *
+ *  The text that states the time scale has the class "pace".
+ *
  *  Needs memory and arithmetic only. Part of libimukit-io. */
 #ifndef IMUKIT_SCHEMATIC_H
 #define IMUKIT_SCHEMATIC_H

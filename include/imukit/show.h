@@ -28,6 +28,18 @@ IMK_BEGIN_C
 /** Show Allan deviations: a table for each statistic and kind of sensor, and a figure. */
 IMK_API void imk_show_allan_log(const imk_allan_log *allan, const char *name, imk_result *result);
 
+/** Logs side by side. */
+enum { IMK_ALLAN_LOGS_MAX = 8 };
+typedef struct imk_allan_shown {
+    size_t count;                                 /**< 1 … IMK_ALLAN_LOGS_MAX */
+    const imk_allan_log *log[IMK_ALLAN_LOGS_MAX]; /**< with the same settings */
+    const char *name[IMK_ALLAN_LOGS_MAX];         /**< of their files */
+    const char *label[IMK_ALLAN_LOGS_MAX];        /**< short, all different */
+} imk_allan_shown;
+/** Show the deviations of several logs: channels of one name in one table and one panel. One log is
+ *  shown as by imk_show_allan_log(). */
+IMK_API void imk_show_allan_logs(const imk_allan_shown *shown, imk_result *result);
+
 /** What of a log is not in its rows. */
 typedef struct imk_info_file {
     const char *format;           /**< title of its format */

@@ -40,6 +40,8 @@ typedef struct writer {
     imki_visitor visitor;
     imki_text *out;
     const imk_curve *curve;
+    const imk_curve *limits; /* where the interval of each point stands; NULL: nowhere */
+    bool is_line;
     int x_digits, y_digits;
     size_t index, stride, written;
 } writer;
@@ -60,22 +62,22 @@ static void put_x(writer *w, double value)
 static void write_point(imki_visitor *v, size_t index, double x, double y, bool begins)
 {
     writer *w = (writer *)v;
-    const imk_curve *curve = w->curve;
-    const bool line = curve->style == IMK_CURVE_LINE || curve->style == IMK_CURVE_DASHES;
+    const imk_curve *curve = w->curve, *limits = w->limits;
     (void)x;
     (void)y;
-    if (line && begins && w->written > 0) {
+    if (w->is_line && begins && w->written > 0) {
         put_x(w, (double)NAN);
-        put_value(w, (double)NAN, 1);
+        for (int i = 1; i < (limits ? 4 : 2); i++)
+            put_value(w, (double)NAN, 1);
     }
     if (w->index++ % w->stride != 0)
         return;
     put_x(w, curve->x[index]);
     put_value(w, curve->y[index], w->y_digits);
-    if (line || !curve->lower || !curve->upper)
+    if (!limits)
         return;
-    put_value(w, curve->lower[index], w->y_digits);
-    put_value(w, curve->upper[index], w->y_digits);
+    put_value(w, limits->lower[index], w->y_digits);
+    put_value(w, limits->upper[index], w->y_digits);
 }
 
 /* What the points of one column of the drawing cover together. */
@@ -118,44 +120,70 @@ static void walk_band(writer *w, const imki_frame *f)
     put_slice(w, &joined);
 }
 
-static void put_points(imki_text *out, const imki_frame *f, const imk_curve *curve)
+static bool is_line(const imk_curve *curve)
 {
+    return curve->style == IMK_CURVE_LINE || curve->style == IMK_CURVE_DASHES;
+}
+
+/* Points have their intervals themselves; points and lines have them in a band of their colour,
+ * without a name, that has the same places. */
+static const imk_curve *limits_of(const imk_panel *panel, const imk_curve *curve)
+{
+    if (!is_line(curve) && curve->lower && curve->upper)
+        return curve;
+    for (const imk_curve *c = panel->curves; c < panel->curves + panel->curve_count; c++) {
+        bool same = c->style == IMK_CURVE_BAND && !c->label[0] && c->color == curve->color &&
+                    c->count == curve->count && c->lower && c->upper;
+        for (size_t i = 0; same && i < c->count; i++)
+            same = c->x[i] == curve->x[i];
+        if (same)
+            return c;
+    }
+    return NULL;
+}
+
+static void put_points(writer *w, imki_text *out, const imki_frame *f)
+{
+    const imk_curve *curve = w->curve;
+    if (imki_curve_is_filled(curve)) {
+        walk_band(w, f);
+        w->stride = imki_stride_for(w->index);
+        w->index = 0;
+        w->out = out;
+        walk_band(w, f);
+        return;
+    }
+    w->out = out;
+    if (w->is_line) {
+        w->stride = imki_line_stride(f, curve);
+        imki_line_walk(f, curve, &w->visitor);
+    } else if (!imki_points_walk(f, curve, &w->visitor)) {
+        out->failed = true;
+    }
+}
+
+static void put_curve(imki_text *out, const imki_frame *f, const imk_panel *panel,
+                      const imk_curve *curve)
+{
+    static const char *const styles[] = {"line", "points", "dashes", "band", "layer", "marks"};
+    const bool filled = imki_curve_is_filled(curve);
+    const imk_curve *limits = filled ? NULL : limits_of(panel, curve);
     writer w = {.visitor = {write_point},
                 .curve = curve,
+                .limits = limits,
+                .is_line = is_line(curve),
                 .x_digits = digits_of(&f->x),
                 .y_digits = digits_of(&f->y),
                 .stride = 1};
-    if (imki_curve_is_filled(curve)) {
-        walk_band(&w, f);
-        w.stride = imki_stride_for(w.index);
-        w.index = 0;
-        w.out = out;
-        walk_band(&w, f);
-        return;
-    }
-    w.out = out;
-    if (curve->style == IMK_CURVE_POINTS || curve->style == IMK_CURVE_MARKS) {
-        if (!imki_points_walk(f, curve, &w.visitor))
-            out->failed = true;
-        return;
-    }
-    w.stride = imki_line_stride(f, curve);
-    imki_line_walk(f, curve, &w.visitor);
-}
-
-static void put_curve(imki_text *out, const imki_frame *f, const imk_curve *curve)
-{
-    static const char *const styles[] = {"line", "points", "dashes", "band", "layer", "marks"};
-    const bool bars = !imki_curve_is_filled(curve) && curve->style != IMK_CURVE_LINE &&
-                      curve->style != IMK_CURVE_DASHES && curve->lower && curve->upper;
     imki_text_put(out, "{\"label\":");
     imki_markup_quote(out, curve->label);
-    imki_text_add(out, ",\"style\":\"%s\",\"color\":%u,\"width\":%d,\"points\":[",
+    imki_text_add(out, ",\"style\":\"%s\",\"color\":%u,\"bars\":%s,\"width\":%d,\"points\":[",
                   styles[curve->style], (unsigned)curve->color % IMKI_PALETTE_SIZE,
-                  bars                          ? 4
-                  : imki_curve_is_filled(curve) ? 3
-                                                : 2);
-    put_points(out, f, curve);
+                  limits == curve ? "true" : "false",
+                  filled   ? 3
+                  : limits ? 4
+                           : 2);
+    put_points(&w, out, f);
     imki_text_put(out, "]}");
 }
 
@@ -222,7 +250,7 @@ void imki_panel_data(imki_text *out, const imk_panel *panel, bool alone)
     imki_text_put(out, "\"curves\":[");
     for (size_t c = 0; c < panel->curve_count; c++) {
         imki_text_put(out, c > 0 ? ",\n" : "");
-        put_curve(out, &f, &panel->curves[c]);
+        put_curve(out, &f, panel, &panel->curves[c]);
     }
     imki_text_put(out, "],\"regions\":[");
     for (size_t r = 0; r < panel->region_count; r++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the files that draw a figure share. Drawings by gnuplot use the same axes, sizes and colours
+/* What the files that draw a figure share. Drawings in letters have the same axes and colours
  * (io/plot/gnuplot_script.c). Lengths are in pixels, y downwards; the drawing is written in whole
  * tenths of them. */
 #ifndef IMUKIT_REPORT_FIGURE_INTERNAL_H
@@ -164,14 +164,16 @@ void imki_key_draw(imki_text *out, const imki_key *key, const imk_panel *panel, 
 
 /* ---- figure_region.c ------------------------------------------------------------------------- */
 
-/* Names of regions that keep clear of one another and of marks; gnuplot's drawings use it, too. */
+/* Names of regions that keep clear of one another, of marks and of lines; gnuplot's drawings use
+ * it, too. */
 enum { IMKI_PLACED_MAX = 64 };
 typedef struct imki_placer {
+    const imk_panel *panel;
     size_t count;
     imki_box placed[IMKI_PLACED_MAX];
 } imki_placer;
 imki_placer imki_placer_make(const imki_frame *frame, const imk_panel *panel);
-/* Where the name of the next region goes: in its corner, or below the names that are there. */
+/* Where the name of the next region goes: in its corner, or where nothing crosses it. */
 imki_box imki_region_place(imki_placer *placer, const imki_frame *frame, const imk_region *region);
 
 void imki_regions_draw(imki_text *out, const imki_frame *frame, const imk_panel *panel);

@@ -45,21 +45,10 @@ static bool overlap(const imki_box *a, const imki_box *b)
     return a->left < b->right && b->left < a->right && a->top < b->bottom && b->top < a->bottom;
 }
 
-/* Move down row by row until no other name is in the way. */
-static void find_room(imki_box *name, const imki_box *placed, size_t count, double bottom)
-{
-    for (size_t i = 0; i < count && name->bottom + row <= bottom; i++)
-        if (overlap(name, &placed[i])) {
-            name->top += row;
-            name->bottom += row;
-            i = (size_t)-1; /* from the first again */
-        }
-}
-
 /* Marks that names keep clear of, too. */
 imki_placer imki_placer_make(const imki_frame *f, const imk_panel *panel)
 {
-    imki_placer placer = {.count = 0};
+    imki_placer placer = {.panel = panel};
     for (size_t c = 0; c < panel->curve_count; c++) {
         const imk_curve *curve = &panel->curves[c];
         if (curve->style != IMK_CURVE_MARKS)
@@ -75,19 +64,97 @@ imki_placer imki_placer_make(const imki_frame *f, const imk_panel *panel)
     return placer;
 }
 
+/* ---- what crosses a name --------------------------------------------------------------------- */
+
+/* How bad a name on another is, a name on a line, one outside of its region, and a row further down
+ * or at the other side. */
+static const double on_name = 100, on_line = 3, outside = 2, further = 0.05, other_side = 0.5;
+
+/* Sides of a region that go through a box. */
+static int sides_within(const imki_box *region, const imki_box *box)
+{
+    const bool beside = region->right < box->left || region->left > box->right;
+    const bool above = region->bottom < box->top || region->top > box->bottom;
+    const double x[2] = {region->left, region->right}, y[2] = {region->top, region->bottom};
+    int count = 0;
+    for (int i = 0; i < 2; i++) {
+        count += !above && x[i] > box->left && x[i] < box->right;
+        count += !beside && y[i] > box->top && y[i] < box->bottom;
+    }
+    return count;
+}
+
+static double badness(const imki_placer *placer, const imki_frame *frame, const imki_box *name)
+{
+    const imk_panel *panel = placer->panel;
+    double sum = 0;
+    for (size_t i = 0; i < placer->count; i++)
+        sum += on_name * overlap(name, &placer->placed[i]);
+    for (size_t r = 0; r < panel->region_count; r++) {
+        const imki_box box = box_of(frame, &panel->regions[r]);
+        sum += on_line * sides_within(&box, name);
+    }
+    for (size_t c = 0; c < panel->curve_count; c++)
+        sum += on_line * (imki_curve_touches(frame, &panel->curves[c], name) > 0);
+    return sum;
+}
+
+/* ---- places ---------------------------------------------------------------------------------- */
+
+/* A search for the best place of a name of this width. */
+typedef struct search {
+    const imki_placer *placer;
+    const imki_frame *frame;
+    imki_box region, best;
+    double width, least;
+    bool at_right; /* is asked for */
+} search;
+
+/* Try the row at `top`, at both sides and in the middle. */
+static void try_row(search *s, double top, double extra)
+{
+    const imki_frame *f = s->frame;
+    const double places[3] = {s->region.left + inset, s->region.right - inset - s->width,
+                              0.5 * (s->region.left + s->region.right - s->width)};
+    if (top < f->top || top + row > f->bottom)
+        return;
+    for (int i = 0; i < 3; i++) {
+        const double left = fmax(f->left + inset, fmin(f->right - inset - s->width, places[i]));
+        const imki_box name = {left, top, left + s->width, top + row};
+        const double bad =
+            badness(s->placer, f, &name) + extra + other_side * ((i == 1) != s->at_right || i == 2);
+        if (bad < s->least) {
+            s->least = bad;
+            s->best = name;
+        }
+    }
+}
+
 imki_box imki_region_place(imki_placer *placer, const imki_frame *frame, const imk_region *region)
 {
-    const imki_box box = box_of(frame, region);
-    const double width = imki_line_width(region->label, font_size);
-    const double room = frame->right - frame->left - 2 * inset;
-    double left = region->label_right ? box.right - inset - width : box.left + inset;
-    left = fmax(frame->left + inset, fmin(frame->right - inset - width, left));
-    imki_box name = {left, box.top + 3, left + fmin(width, room), box.top + 3 + row};
-    find_room(&name, placer->placed, placer->count, frame->bottom);
+    const double room = frame->right - frame->left - 2 * inset, edge = 3;
+    search s = {.placer = placer,
+                .frame = frame,
+                .region = box_of(frame, region),
+                .width = fmin(imki_line_width(region->label, font_size), room),
+                .least = HUGE_VAL,
+                .at_right = region->label_right};
+    const double first = s.region.top + edge;
+    s.best = (imki_box){s.region.left + inset, first, s.region.left + inset + s.width, first + row};
+    for (int k = 0; k == 0 || first + (k + 1) * row <= s.region.bottom; k++)
+        try_row(&s, first + k * row, k * further);
+    try_row(&s, s.region.top - row, outside);
+    try_row(&s, s.region.bottom, outside);
     if (placer->count < IMKI_PLACED_MAX)
-        placer->placed[placer->count++] = name;
-    return name;
+        placer->placed[placer->count++] = s.best;
+    return s.best;
 }
+
+/* ---- drawing --------------------------------------------------------------------------------- */
+
+/* The colours of the palette, dark enough for letters on white: a contrast of 4.5 at least. */
+static const char *const inks[IMKI_PALETTE_SIZE] = {"#0072b2", "#b04e00", "#007a59", "#a3527e",
+                                                    "#8f6300", "#1f78ad", "#333333", "#6b6b6b"};
 
 void imki_region_labels_draw(imki_text *out, const imki_frame *frame, const imk_panel *panel)
 {
@@ -97,7 +164,8 @@ void imki_region_labels_draw(imki_text *out, const imki_frame *frame, const imk_
         const imk_region *region = &panel->regions[r];
         const imki_box name = imki_region_place(&placer, frame, region);
         char color[16];
-        snprintf(color, sizeof color, " fill=\"%s\"", imki_color(region->color));
+        snprintf(color, sizeof color, " fill=\"%s\"",
+                 inks[(unsigned)region->color % IMKI_PALETTE_SIZE]);
         imki_svg_line(out, name.left, name.bottom - 3, IMKI_START, font_size, room, color,
                       region->label);
     }

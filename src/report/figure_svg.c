@@ -39,6 +39,7 @@ typedef struct layout {
     imki_box cell;
     imki_frame frame;
     imki_key key;
+    imk_key_place place; /* of the key */
     double key_left, key_top;
     double below, left; /* what a frame leaves free */
     size_t touches[CORNERS];
@@ -68,14 +69,14 @@ static size_t note_lines(const imk_panel *panel)
 
 /* ---- layout ---------------------------------------------------------------------------------- */
 
-static bool is_beside(const sheet *s, const imk_panel *panel)
+static bool is_beside(const sheet *s, const layout *l)
 {
-    return s->single && panel->key == IMK_KEY_UPPER;
+    return s->single && l->place == IMK_KEY_UPPER;
 }
 
-static bool is_inside(const sheet *s, const imk_panel *panel)
+static bool is_inside(const sheet *s, const layout *l)
 {
-    return panel->key != IMK_KEY_BELOW && !is_beside(s, panel);
+    return l->place != IMK_KEY_BELOW && !is_beside(s, l) && l->key.entries > 0;
 }
 
 /* The key, and everything below the frame. */
@@ -87,13 +88,13 @@ static void lay_out_key(const sheet *s, const imk_panel *panel, layout *l)
     if (panel->x_label && panel->x_label[0])
         l->below += LABEL_SIZE + 6;
     l->below += NOTE_ROW * (double)note_lines(panel);
-    if (is_beside(s, panel))
+    if (is_beside(s, l))
         l->key = imki_key_make(panel, font_size, 0.4 * width, 0.8 * height, 1);
-    else if (panel->key == IMK_KEY_BELOW)
+    else if (l->place == IMK_KEY_BELOW)
         l->key = imki_key_make(panel, font_size, width - 60, 0.4 * height, 6);
     else
         l->key = imki_key_make(panel, font_size, 0.6 * width, 0.5 * height, 1);
-    if (panel->key == IMK_KEY_BELOW && l->key.entries > 0)
+    if (l->place == IMK_KEY_BELOW && l->key.entries > 0)
         l->below += KEY_GAP + l->key.height;
 }
 
@@ -106,7 +107,7 @@ static void lay_out_frame(const sheet *s, const imk_panel *panel, double below, 
     f->top = l->cell.top + (s->single ? SINGLE_TOP : PANEL_TOP);
     f->bottom = fmax(l->cell.bottom - below, f->top + 50);
     f->right = l->cell.right - RIGHT;
-    if (is_beside(s, panel) && l->key.entries > 0)
+    if (is_beside(s, l) && l->key.entries > 0)
         f->right -= l->key.width + 4;
     double widest = 0;
     imki_axis_ticks(&f->y, f->bottom - f->top, y_label_room * s->tick_size, &ticks);
@@ -119,11 +120,11 @@ static void lay_out_frame(const sheet *s, const imk_panel *panel, double below, 
 
 /* Corner 0 is the corner that a panel asks for, 1 is on the other side, 2 and 3 are the same at the
  * other end. */
-static imki_box corner_box(const imk_panel *panel, const layout *l, int corner)
+static imki_box corner_box(const layout *l, int corner)
 {
     const imki_frame *f = &l->frame;
     const bool at_left = corner % 2 == 1;
-    const bool at_bottom = (panel->key == IMK_KEY_LOWER) != (corner >= 2);
+    const bool at_bottom = (l->place == IMK_KEY_LOWER) != (corner >= 2);
     const double left = at_left ? f->left + KEY_GAP : f->right - KEY_GAP - l->key.width;
     const double top = at_bottom ? f->bottom - 6 - l->key.height : f->top + 2;
     return (imki_box){left, top, left + l->key.width, top + l->key.height};
@@ -133,7 +134,8 @@ static imki_box corner_box(const imk_panel *panel, const layout *l, int corner)
 static void count_touches(const imk_panel *panel, layout *l)
 {
     for (int corner = 0; corner < CORNERS; corner++) {
-        imki_box box = corner_box(panel, l, corner);
+        l->touches[corner] = 0;
+        imki_box box = corner_box(l, corner);
         box = (imki_box){box.left - 4, box.top - 2, box.right + 4, box.bottom + 2};
         for (size_t c = 0; c < panel->curve_count; c++)
             l->touches[corner] += imki_curve_touches(&l->frame, &panel->curves[c], &box);
@@ -156,35 +158,35 @@ static int common_corner(const sheet *s)
 }
 
 /* That corner, or one where this key hides much less. */
-static void choose_corner(const imk_panel *panel, int common, layout *l)
+static void choose_corner(int common, layout *l)
 {
     int best = common;
     for (int corner = 0; corner < CORNERS; corner++)
         if (2 * l->touches[corner] < l->touches[best])
             best = corner;
-    const imki_box box = corner_box(panel, l, best);
+    const imki_box box = corner_box(l, best);
     l->key_left = box.left;
     l->key_top = box.top;
 }
 
-static void place_key(const sheet *s, const imk_panel *panel, int common, layout *l)
+static void place_key(const sheet *s, int common, layout *l)
 {
     const imki_frame *f = &l->frame;
     if (l->key.entries == 0)
         return;
-    if (is_beside(s, panel)) {
+    if (is_beside(s, l)) {
         l->key_left = f->right + 14;
         l->key_top = f->top;
-    } else if (panel->key == IMK_KEY_BELOW) {
+    } else if (l->place == IMK_KEY_BELOW) {
         const double middle = (f->left + f->right - l->key.width) / 2;
         l->key_left = fmax(l->cell.left + 8, fmin(middle, l->cell.right - 8 - l->key.width));
         l->key_top = l->cell.bottom - 8 - l->key.height;
     } else {
-        choose_corner(panel, common, l);
+        choose_corner(common, l);
     }
 }
 
-static void lay_out(const sheet *s)
+static void lay_out_frames(const sheet *s)
 {
     const imki_figure_size *z = &s->size;
     const size_t count = s->figure->panel_count;
@@ -209,12 +211,42 @@ static void lay_out(const sheet *s)
         for (size_t q = p % z->columns; q < count; q += z->columns)
             most = fmax(most, s->layout[q].left);
         l->frame.left = fmin(l->cell.left + most, l->frame.right - 50);
-        if (is_inside(s, &s->figure->panels[p]) && l->key.entries > 0)
+        if (is_inside(s, l))
             count_touches(&s->figure->panels[p], l);
     }
+}
+
+/* A key that would hide something in each corner goes below the axes, with those of its row. */
+static bool put_below(const sheet *s, size_t first, size_t end)
+{
+    bool below = false;
+    for (size_t p = first; p < end; p++) {
+        bool hides = is_inside(s, &s->layout[p]);
+        for (int corner = 0; corner < CORNERS; corner++)
+            hides = hides && s->layout[p].touches[corner] > 0;
+        below = below || hides;
+    }
+    for (size_t p = first; p < end && below; p++) {
+        s->layout[p].place = IMK_KEY_BELOW;
+        memset(s->layout[p].touches, 0, sizeof s->layout[p].touches);
+    }
+    return below;
+}
+
+static void lay_out(const sheet *s)
+{
+    const size_t count = s->figure->panel_count;
+    bool again = false;
+    for (size_t p = 0; p < count; p++)
+        s->layout[p].place = s->figure->panels[p].key;
+    lay_out_frames(s);
+    for (size_t p = 0; p < count; p += s->size.columns)
+        again = put_below(s, p, p + s->size.columns < count ? p + s->size.columns : count) || again;
+    if (again)
+        lay_out_frames(s);
     const int common = common_corner(s);
     for (size_t p = 0; p < count; p++)
-        place_key(s, &s->figure->panels[p], common, &s->layout[p]);
+        place_key(s, common, &s->layout[p]);
 }
 
 /* ---- axes ------------------------------------------------------------------------------------ */

@@ -213,6 +213,15 @@ void imki_page_figure(imki_page *page, const imk_figure *figure, const char *cap
     imki_text_put(&page->text, "</figure>\n");
 }
 
+void imki_page_drawing(imki_page *page, const char *svg, const char *caption)
+{
+    if (!page || !svg)
+        return;
+    imki_text_put(&page->text, "<figure class=\"animation\" tabindex=\"0\">\n");
+    put_svg(page, svg);
+    element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
+}
+
 void imki_page_animation(imki_page *page, const imk_animation *animation, const char *caption)
 {
     char *svg = NULL;
@@ -229,9 +238,7 @@ void imki_page_animation(imki_page *page, const imk_animation *animation, const 
         element(page, "<p class=\"verdict note\">Animation left out: ", error.found, ".</p>\n");
         return;
     }
-    imki_text_put(&page->text, "<figure class=\"animation\">\n");
-    put_svg(page, svg);
-    element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
+    imki_page_drawing(page, svg, caption);
     free(svg);
 }
 

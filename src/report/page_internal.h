@@ -37,6 +37,8 @@ void imki_page_table(imki_page *page, size_t rows, size_t columns, unsigned righ
 void imki_page_figure(imki_page *page, const imk_figure *figure, const char *caption);
 /* An animation, drawn into the page. */
 void imki_page_animation(imki_page *page, const imk_animation *animation, const char *caption);
+/* A drawing made here, an SVG text; NULL: none, as memory was exhausted. */
+void imki_page_drawing(imki_page *page, const char *svg, const char *caption);
 /* Begin a new sheet on paper and in a PDF; no effect on the screen. */
 void imki_page_break(imki_page *page);
 /* Preformatted text, such as a model file. */

@@ -95,6 +95,15 @@ void imk_result_animation(imk_result *result, const imk_animation *animation, co
     made->animation.y = imki_arena_numbers(arena, animation->y, animation->count, 1);
 }
 
+void imk_result_drawing(imk_result *result, const char *svg, const char *caption)
+{
+    imki_block *made = add(result, IMKI_BLOCK_DRAWING, caption);
+    if (!made)
+        return;
+    made->drawing = imki_arena_text(&result->arena, svg);
+    result->arena.failed = result->arena.failed || !svg;
+}
+
 /* -------------------------------------------------------------------------------------- tables */
 
 imk_table *imk_result_table(imk_result *result, unsigned right)

@@ -38,7 +38,8 @@ typedef enum imki_block_kind {
     IMKI_BLOCK_BREAK,
     IMKI_BLOCK_TABLE,
     IMKI_BLOCK_FIGURE,
-    IMKI_BLOCK_ANIMATION
+    IMKI_BLOCK_ANIMATION,
+    IMKI_BLOCK_DRAWING
 } imki_block_kind;
 
 typedef struct imki_row {
@@ -67,6 +68,7 @@ typedef struct imki_block {
     imk_table table;
     imk_figure_builder figure;
     imk_animation animation;
+    const char *drawing;
     struct imki_block *next;
 } imki_block;
 

@@ -45,6 +45,9 @@ static void put_block(imki_page *page, const imki_block *block, imki_arena *scra
     case IMKI_BLOCK_ANIMATION:
         imki_page_animation(page, &block->animation, block->text);
         break;
+    case IMKI_BLOCK_DRAWING:
+        imki_page_drawing(page, block->drawing, block->text);
+        break;
     }
 }
 

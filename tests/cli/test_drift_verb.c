@@ -328,7 +328,7 @@ static void test_files(void **state)
     assert_string_equal(out, "2\n");
     assert_int_equal(run("grep -q 'Comparison' a.html"), 0);
     assert_int_equal(run("$I drift navigation --compensated --plot a.svg && grep -q svg a.svg"), 0);
-    if (imk_plot_available()) {
+    if (imk_plot_available("term")) {
         assert_int_equal(run("$I drift navigation -d 1h --plot term"), 0);
         check_contains(out, "Horizontal error", "term");
     }

@@ -216,10 +216,31 @@ static void test_maps(void **state)
     assert_int_equal(run("$I grade a.yaml --map cost --plot c.svg"), 1);
     check_contains(err, "--map: the model has no value for this map", err);
     assert_int_equal(access("c.svg", F_OK), -1);
-    if (imk_plot_available()) {
+    if (imk_plot_available("term")) {
         assert_int_equal(run("$I grade tactical --plot term"), 0);
         check_contains(out, "stability of the scale factor [ppm]", "term");
     }
+    sweep();
+}
+
+/* White noise N has the Allan deviation N / sqrt(tau): 0.3 deg/sqrt(h) is 0.3 * 60 = 18 deg/h at 1
+ * s. The worst axis is drawn. */
+static void test_noise_is_drawn(void **state)
+{
+    (void)state;
+    put("n.yaml", "imukit: 1\n"
+                  "gyro: {bias: {repeatability: 1 deg/h},"
+                  " noise: {angle_random_walk: 0.1 0.3 0.2 deg/sqrt(h)}}\n"
+                  "accel: {bias: {repeatability: 1 mg}}\n");
+    assert_int_equal(run("$I grade n.yaml --report r.html"), 0);
+    read_text("r.html", out);
+    check_contains(out, "<h2>Noise</h2>", "page");
+    check_contains(out, ",1,18,", "page");
+    assert_null(strstr(out, "\"title\":\"accelerometers\""));
+    put("n.yaml", "imukit: 1\naccel: {bias: {repeatability: 1 mg}}\n");
+    assert_int_equal(run("$I grade n.yaml --report r.html"), 0);
+    read_text("r.html", out);
+    assert_null(strstr(out, "<h2>Noise</h2>"));
     sweep();
 }
 
@@ -344,6 +365,7 @@ int main(void)
                                        cmocka_unit_test(test_claims_beside_figures),
                                        cmocka_unit_test(test_parts_of_a_unit),
                                        cmocka_unit_test(test_maps),
+                                       cmocka_unit_test(test_noise_is_drawn),
                                        cmocka_unit_test(test_prices_are_apart),
                                        cmocka_unit_test(test_note_is_on_the_map),
                                        cmocka_unit_test(test_maps_as_data),

@@ -138,7 +138,9 @@ static void test_rates(void **state)
     check_contains(out, "1 sigma of a reading [arcsec]", "rates");
     check_contains(out, "All else is that of slow.npy, the longest", "rates");
     check_contains(out, "gyro_x   reading noise  2 ", "rates");
-    assert_int_equal(run("$I identify slow.npy fast.npy --devices"), 0);
+    assert_int_equal(run("$I identify slow.npy fast.npy --devices --plot both.svg && grep -q "
+                         "slow.npy both.svg && grep -q fast.npy both.svg"),
+                     0);
     check_contains(out, "reading noise [arcsec]", "sensors at two rates");
     assert_int_equal(run("$I identify --plan readings.yaml --rate 100Hz --want 'reading_noise 1%'"),
                      0);

@@ -421,6 +421,44 @@ static void test_animation(void **state)
     sweep();
 }
 
+/* The schematics of the pages are what the command draws. */
+static void test_schematics(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < imk_instrument_count(); i++) {
+        const char *name = imk_instrument_get(i)->name;
+        char line[1024];
+        snprintf(line, sizeof line,
+                 "$I physics %s --view -o a.svg && cmp a.svg " SOURCE_DIRECTORY
+                 "/docs/images/schematic-%s.svg",
+                 name, name);
+        if (run(line) != 0)
+            fail_msg("%s: %s%s: if it changed on purpose, tools/draw_images.sh schematic-%s", name,
+                     out, err, name);
+    }
+    /* to standard output, by its name, and at the top of a report */
+    assert_int_equal(run("$I physics ring_laser --view >b.svg && $I physics ring_laser --view "
+                         "Schematic -o c.svg && cmp b.svg c.svg"),
+                     0);
+    assert_int_equal(run("$I physics ring_laser --report r.html && grep -q 'class=\"schematic\"' "
+                         "r.html"),
+                     0);
+    /* another input, noise, length of a round and design make another drawing */
+    static const char *const others[] = {"ring_laser --rate '20 deg/s'", "ring_laser --seed 2",
+                                         "ring_laser --duration 1ms", "ring_laser --no-noise"};
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        char line[200];
+        snprintf(line, sizeof line, "$I physics %s --view -o d.svg && cmp -s b.svg d.svg",
+                 others[i]);
+        if (run(line) != 1)
+            fail_msg("%s: %s", others[i], err);
+    }
+    assert_int_equal(run("$I physics ring_laser --show | sed 's/shape: triangle/shape: square/' "
+                         ">d.yaml && $I physics d.yaml --view -o d.svg && cmp -s b.svg d.svg"),
+                     1);
+    sweep();
+}
+
 /* Designs to look at, which the documentation draws. */
 static void test_examples(void **state)
 {
@@ -536,6 +574,27 @@ static void test_refusals(void **state)
          E "--duration runs the instrument and --reduce does not: leave one out\n" TRY("physics")},
         {"ring_laser --view 1", 2,
          E "--view is drawn by --plot FILE or --animate FILE: add one\n" TRY("physics")},
+        {"ring_laser -d 1s --report a.pdf", 2,
+         E "--report a.pdf: a report is a page, FILE.html; a browser prints it as PDF: chromium "
+           "--headless --no-pdf-header-footer --print-to-pdf=FILE.pdf FILE.html\n" TRY("physics")},
+        {"--view ring_laser", 2,
+         E
+         "--view ring_laser: the instrument stands before: imukit physics ring_laser --view\n" TRY(
+             "physics")},
+        {"ring_laser --view -o a.csv", 2,
+         E "-o a.csv: the schematic is an SVG; expected a name ending in .svg\n" TRY("physics")},
+        {"ring_laser --view --plot a.svg", 2,
+         E "--view without a VIEW writes the schematic and nothing else: leave --plot out, or name "
+           "a view\n" TRY("physics")},
+        {"ring_laser --view --report a.html", 2,
+         E "--view without a VIEW writes the schematic and nothing else: leave --report out, or "
+           "--view: the page has the schematic at its top\n" TRY("physics")},
+        {"ring_laser --view --duration 1s", 2,
+         E "--duration: 1 s last 6.2e+03 s in the drawing, which is 6.2e+03 times as slow; "
+           "expected 0.000161 s to 0.58 s\n" TRY("physics")},
+        {"--view", 2,
+         E "an operand is missing: imukit physics INSTRUMENT --view; imukit physics lists the "
+           "instruments\n" TRY("physics")},
         {"ring_laser -d 1s --plot a.gif", 2,
          E "--plot a.gif: expected a name ending in .svg, .png or .pdf, or the word term\n" TRY(
              "physics")},
@@ -664,11 +723,10 @@ static void test_design_for_a_model(void **state)
 static void test_points_beyond_the_axis(void **state)
 {
     (void)state;
-    assert_int_equal(
-        run("$I physics tuned_gyro --rate '10 deg/s' -d 10s --plot t.svg && grep -o "
-            "'[0-9]* of 1000 points are beyond\\|from 0.01 to 0.02 s"
-            "' t.svg"),
-        0);
+    assert_int_equal(run("$I physics tuned_gyro --rate '10 deg/s' -d 10s --plot t.svg && grep -o "
+                         "'[0-9]* of 1000 points are beyond\\|from 0.01 to 0.02 s"
+                         "' t.svg"),
+                     0);
     check_contains(out, "2 of 1000 points are beyond\nfrom 0.01 to 0.02 s\n", "figure");
     assert_int_equal(
         run("$I physics rate_gyro -d 10s --plot r.svg && ! grep 'beyond\\|0\\.18' r.svg"), 0);
@@ -694,6 +752,7 @@ int main(void)
         cmocka_unit_test(test_derived),
         cmocka_unit_test(test_sweep),
         cmocka_unit_test(test_animation),
+        cmocka_unit_test(test_schematics),
         cmocka_unit_test(test_examples),
         cmocka_unit_test(test_pictures),
         cmocka_unit_test(test_refusals),

@@ -200,6 +200,36 @@ static void test_allan_taus(void **state)
     sweep();
 }
 
+/* Logs side by side: the numbers are those of each alone, a channel that one of them has not is of
+ * the other only, and each averaging time of either has a row. */
+static void test_allan_of_several(void **state)
+{
+    (void)state;
+    put("one.yaml", "imukit: 1\ngyro: {noise: {angle_random_walk: 0.1 deg/sqrt(h)}}\n");
+    assert_int_equal(run("$I simulate one.yaml --rate 10Hz --duration 20s --seed 1 -o a.csv && $I "
+                         "simulate one.yaml --rate 20Hz --duration 20s --seed 2 -o b.csv && $I "
+                         "convert b.csv b.csv.gz --select time,gyro_x"),
+                     0);
+    assert_int_equal(run("$I allan a.csv --tau octave -o a.txt && $I allan b.csv.gz -o b.txt && $I "
+                         "allan a.csv b.csv.gz -o ab.txt && { sed 1d a.txt | sed s/^/a.csv,/; sed "
+                         "1d b.txt | sed s/^/b.csv.gz,/; } >expected && sed 1d ab.txt | cmp - "
+                         "expected"),
+                     0);
+    assert_int_equal(run("$I allan a.csv b.csv.gz --plot p.svg"), 0);
+    check_contains(out, "\ngyro_x [deg/h]\ntau [s]  a.csv [deg/h]", "table");
+    check_contains(out, "b.csv.gz [deg/h]\n0.05     -   ", "table");
+    check_contains(out, "\ngyro_y [deg/h]\ntau [s]  a.csv [deg/h]\n0.1 ", "table");
+    assert_int_equal(run("grep -c '>gyro_[xyz]<' p.svg; grep -c '>a.csv<' p.svg; grep -c "
+                         "'>b.csv.gz<' p.svg"),
+                     0);
+    assert_string_equal(out, "3\n3\n1\n");
+    assert_int_equal(run("$I allan a.csv b.csv.gz --json | grep -c '\"sentence\"'"), 0);
+    assert_string_equal(out, "3\n"); /* of each, and of both */
+    assert_int_equal(run("$I allan a.csv missing.csv"), 1);
+    check_contains(err, "missing.csv", err);
+    sweep();
+}
+
 /* ---- identify -------------------------------------------------------------------------------- */
 
 /* Simulate, identify, and find the truth inside the intervals: 18 intervals of 99.99 % each all
@@ -434,8 +464,8 @@ static void test_plots(void **state)
     (void)state;
     write_good();
     assert_int_equal(run("$I allan good.csv --plot a.svg && grep -c '</svg>' a.svg"), 0);
-    if (!imk_plot_available()) {
-        print_message("the rest skipped: gnuplot is not installed\n");
+    if (!imk_plot_available("x.png")) {
+        print_message("the rest skipped: rsvg-convert is not installed\n");
         sweep();
         return;
     }
@@ -466,6 +496,7 @@ int main(void)
         cmocka_unit_test(test_devices_by_part_of_name),
         cmocka_unit_test(test_devices_sensitivities),
         cmocka_unit_test(test_convert),
+        cmocka_unit_test(test_allan_of_several),
         cmocka_unit_test(test_plots),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

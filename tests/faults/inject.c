@@ -12,8 +12,8 @@
  * PREFIX.calls gets an entry for each call: what it was, and a hash of the stack it came from.
  *
  * The C library does not use its own read() and write() for its streams; those are made anew on top
- * of ours, standard output included. Its allocations do come here. What a program starts (gnuplot)
- * is left alone. */
+ * of ours, standard output included. Its allocations do come here. What a program starts
+ * (rsvg-convert) is left alone. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

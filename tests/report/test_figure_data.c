@@ -85,12 +85,37 @@ static void test_styles(void **state)
     check_numbers(data, 3, 3, (double[]){1, 0, 2, 2, 3, 5, gap, gap, gap, 4, 15, 17, 5, 24, 26},
                   15);
     assert_int_equal(json_integer_value(json_object_get(curve_of(data, 3), "color")), 7);
+    assert_true(json_is_true(json_object_get(curve_of(data, 2), "bars")));
     const json_t *axis = json_object_get(data, "x");
     imki_axis across, along;
     imki_panel_axes(&panel, &across, &along);
     assert_true(json_number_value(json_object_get(axis, "low")) == across.low);
     assert_true(json_number_value(json_object_get(axis, "high")) == across.high);
     assert_true(json_is_false(json_object_get(axis, "log")));
+    json_decref(data);
+}
+
+/* What has a band in its colour without a name has its intervals, without bars. */
+static void test_intervals(void **state)
+{
+    (void)state;
+    const double gap = (double)NAN;
+    double y[POINTS] = {1, 4, gap, 16, 25}, low[POINTS] = {0, 3, 8, 15, 24},
+           high[POINTS] = {2, 5, 10, 17, 26};
+    const imk_curve curves[] = {{"", IMK_CURVE_BAND, 2, POINTS, x, y, low, high},
+                                {"", IMK_CURVE_BAND, 3, POINTS - 1, x, y, low, high},
+                                {"line", IMK_CURVE_LINE, 2, POINTS, x, y, NULL, NULL},
+                                {"points", IMK_CURVE_POINTS, 2, POINTS, x, y, NULL, NULL},
+                                {"other", IMK_CURVE_POINTS, 3, POINTS, x, y, NULL, NULL}};
+    const imk_panel panel = {
+        .title = "t", .x_label = "x", .y_label = "y", .curve_count = 5, .curves = curves};
+    json_t *data = data_of(&panel);
+    check_numbers(
+        data, 2, 4,
+        (double[]){1, 1, 0, 2, 2, 4, 3, 5, gap, gap, gap, gap, 4, 16, 15, 17, 5, 25, 24, 26}, 20);
+    check_numbers(data, 3, 4, (double[]){1, 1, 0, 2, 2, 4, 3, 5, 4, 16, 15, 17, 5, 25, 24, 26}, 16);
+    check_numbers(data, 4, 2, (double[]){1, 1, 2, 4, 4, 16, 5, 25}, 8);
+    assert_true(json_is_false(json_object_get(curve_of(data, 3), "bars")));
     json_decref(data);
 }
 
@@ -237,11 +262,9 @@ static void test_catalogue(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_styles),
-        cmocka_unit_test(test_digits),
-        cmocka_unit_test(test_a_million_points),
-        cmocka_unit_test(test_texts),
-        cmocka_unit_test(test_unit),
+        cmocka_unit_test(test_styles),    cmocka_unit_test(test_intervals),
+        cmocka_unit_test(test_digits),    cmocka_unit_test(test_a_million_points),
+        cmocka_unit_test(test_texts),     cmocka_unit_test(test_unit),
         cmocka_unit_test(test_catalogue),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -269,6 +269,65 @@ static void test_everything_is_drawn(void **state)
         }
 }
 
+/* The name of a region keeps off the lines that cross its corner: a dashed line, and the side of
+ * another region. That of a region narrower than its name stands outside, crossed by nothing. */
+static void test_names_off_lines(void **state)
+{
+    (void)state;
+    static const double line_x[] = {1.5, 1.5}, line_y[] = {0, 10};
+    static const imk_region crossed[] = {{"a crossed region", 0, 1, 9, 6, 9, false, false},
+                                         {"wide", 1, 0, 10, 8.8, 10, false, false},
+                                         {"narrower than this", 2, 4, 4.2, 2, 3, false, false}};
+    const imk_curve line = {"", IMK_CURVE_DASHES, 0, 2, line_x, line_y, NULL, NULL};
+    const imk_panel panel = {
+        .curve_count = 1, .curves = &line, .region_count = 3, .regions = crossed};
+    const drawing *d = draw_panel(&panel);
+    const double scale = (d->right - d->left) / 11.4, origin = d->left + 0.7 * scale;
+    const label *name = find(d, "a crossed region"), *narrow = find(d, "narrower than this");
+    const double side = d->bottom - (8.8 + 0.7) / 11.4 * (d->bottom - d->top);
+    assert_true(name && narrow);
+    assert_true(name->x > origin + 1.5 * scale);
+    assert_true(name->y - 100 > side);
+    const double top = d->bottom - (3 + 0.7) / 11.4 * (d->bottom - d->top);
+    const double bottom = d->bottom - (2 + 0.7) / 11.4 * (d->bottom - d->top);
+    assert_true(narrow->y < top || narrow->y - 100 > bottom);
+}
+
+/* Noise that fills the frame leaves no corner for a key: it stands below the axes. Without it the
+ * key of a panel among others is within them. */
+static void test_key_off_data(void **state)
+{
+    (void)state;
+    static double x[400], y[400];
+    for (int i = 0; i < 400; i++) {
+        x[i] = i;
+        y[i] = i % 2;
+    }
+    const imk_curve noise = {"noise", IMK_CURVE_LINE, 0, 400, x, y, NULL, NULL};
+    const imk_curve full[3] = {noise, noise, noise}; /* higher than the margin above the data */
+    const imk_curve flat = {"flat", IMK_CURVE_LINE, 0, 1, x, y, NULL, NULL};
+    const imk_panel noisy = {.curve_count = 3, .curves = full};
+    const imk_panel calm = {.curve_count = 1, .curves = &flat};
+    const imk_panel panels[2][2] = {{noisy, noisy}, {calm, calm}};
+    const drawing *d = draw(&(imk_figure){"", 2, 2, panels[0]});
+    assert_true(find(d, "noise")->y > d->bottom);
+    d = draw(&(imk_figure){"", 2, 2, panels[1]});
+    assert_true(find(d, "flat")->y < d->bottom);
+}
+
+/* Given limits are those of the axis: a line is cut there, and spans it the other way. */
+static void test_given_limits(void **state)
+{
+    (void)state;
+    static const double x[] = {0, 1, 2, 3}, y[] = {100, 1, 2, 1};
+    const imk_curve line = {"", IMK_CURVE_LINE, 0, 4, x, y, NULL, NULL};
+    const imk_panel panel = {.curve_count = 1, .curves = &line, .y_low = 0, .y_high = 4};
+    const drawing *d = draw_panel(&panel);
+    assert_non_null(find(d, "4.0"));
+    assert_null(find(d, "100"));
+    assert_non_null(find(d, "3.0"));
+}
+
 static void test_size_is_that_of_old(void **state)
 {
     (void)state;
@@ -584,6 +643,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_everything_is_drawn),
+        cmocka_unit_test(test_names_off_lines),
+        cmocka_unit_test(test_key_off_data),
+        cmocka_unit_test(test_given_limits),
         cmocka_unit_test(test_size_is_that_of_old),
         cmocka_unit_test(test_long_texts),
         cmocka_unit_test(test_ticks_are_where_they_belong),

@@ -145,7 +145,7 @@ static void for_each(visitor *visit)
         const imk_schematic *schematic = imk_schematic_of(instrument);
         assert_true(instrument->design_size <= sizeof design);
         if (!schematic)
-            continue;
+            fail_msg("%s has no schematic", instrument->name);
         assert_ptr_equal(schematic->instrument, instrument);
         instrument->set_default(design);
         visit(schematic, design);
@@ -309,6 +309,36 @@ static void check_sliders(const imk_schematic *s, void *design)
     assert_in_range(fields, 2, 6);
 }
 
+/* At the ends of the range of any field, too, the drawing is one, if the design is possible. */
+static void check_extremes(const imk_schematic *s, void *design)
+{
+    const imk_instrument *instrument = s->instrument;
+    imk_error error;
+    int drawn = 0;
+    for (size_t f = 0; f < instrument->field_count; f++) {
+        const imk_design_field *field = &instrument->fields[f];
+        for (int end = 0; end < 2; end++) {
+            instrument->set_default(design);
+            void *at = (char *)design + field->offset;
+            const double value = end ? field->maximum : field->minimum;
+            if (field->kind == IMK_DESIGN_NUMBER)
+                *(double *)at = value > 0 && field->open && !end ? 1.001 * value : value;
+            else if (field->kind == IMK_DESIGN_COUNT)
+                *(int *)at = (int)value;
+            else if (field->kind == IMK_DESIGN_CHOICE)
+                *(int *)at = end;
+            else
+                *(bool *)at = end;
+            if (imk_design_check(instrument, design, &error) != IMK_OK)
+                continue;
+            check_drawing(s, design);
+            drawn++;
+        }
+    }
+    instrument->set_default(design);
+    assert_true(drawn >= (int)instrument->field_count / 2);
+}
+
 /* Every part moves in the animation, which is short. */
 static void check_animation(const imk_schematic *s, void *design)
 {
@@ -329,6 +359,84 @@ static void check_animation(const imk_schematic *s, void *design)
         held += s->parts[p].held;
     assert_int_equal(d.moving + d.resting, s->part_count);
     assert_true(d.resting <= held);
+}
+
+/* ---- one of them by hand --------------------------------------------------------------------- */
+
+/* The mass of the MEMS accelerometer at each moment, by a run of the instrument itself: 30 px are
+ * the gap. Ten periods of the springs last 4 s, and the specific force is a sine of 5 g whose
+ * period they are. */
+static void test_values(void **state)
+{
+    (void)state;
+    enum { FRAMES = 50 };
+    static _Alignas(64) unsigned char instrument_state[1 << 16];
+    const imk_instrument *instrument = &imk_mems_accelerometer_instrument;
+    imk_mems_accelerometer design = imk_mems_accelerometer_default();
+    imk_physics_log_settings settings = imk_physics_log_default();
+    imk_physics_input input = {.exposure = imk_exposure_default(),
+                               .frequency = design.frequency / 10};
+    double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], signals[IMK_INSTRUMENT_SIGNALS_MAX];
+    imk_error error;
+    char *svg;
+    size_t size;
+    settings.instrument = instrument;
+    settings.design = &design;
+    CHECK_OK(imk_schematic_animated(&settings, 0, FRAMES, NULL, &svg, &size, &error));
+    assert_non_null(strstr(svg, "prefers-reduced-motion"));
+    const char *value = strstr(svg, "type=\"translate\"");
+    assert_non_null(value);
+    assert_true(value > strstr(svg, "<g class=\"s-moving\">"));
+    assert_non_null(strstr(value, "dur=\"4000ms\""));
+    value = strstr(value, "values=\"") + 8;
+    assert_true(instrument->state_size <= sizeof instrument_state);
+    memset(instrument_state, 0, sizeof instrument_state);
+    settings.physics.rate = (FRAMES - 1) / (10 / design.frequency);
+    CHECK_OK(imk_instrument_init(instrument, &design, &settings.physics, instrument_state, &error));
+    input.exposure.specific_force[0] = 5 * 9.80665;
+    for (int k = 0; k < FRAMES; k++) {
+        const imk_exposure e = imk_physics_input_at(&input, settings.physics.rate, (uint64_t)k);
+        instrument->step(instrument_state, &e, outputs);
+        instrument->observe(instrument_state, signals);
+        char *end;
+        /* tenths of a pixel are written */
+        CHECK_CLOSE(strtod(value, &end), 30 / design.gap * signals[0], 0.0501);
+        assert_true(*end == (k < FRAMES - 1 ? ';' : '"'));
+        value = end + 1;
+    }
+    free(svg);
+}
+
+static void test_refusals(void **state)
+{
+    (void)state;
+    imk_ring_laser design = imk_ring_laser_default();
+    imk_physics_log_settings settings = imk_physics_log_default();
+    imk_error error;
+    char *svg = NULL;
+    size_t size;
+    settings.instrument = &imk_ring_laser_instrument;
+    CHECK_STATUS(imk_schematic_svg(NULL, &design, &svg, &size, &error), IMK_ERROR_ARGUMENT);
+    CHECK_STATUS(imk_schematic_svg(settings.instrument, NULL, &svg, &size, &error),
+                 IMK_ERROR_ARGUMENT);
+    CHECK_STATUS(imk_schematic_animated(&settings, 0, 0, NULL, &svg, &size, &error),
+                 IMK_ERROR_ARGUMENT); /* no design */
+    settings.design = &design;
+    CHECK_STATUS(imk_schematic_animated(&settings, 0, 1, NULL, &svg, &size, &error),
+                 IMK_ERROR_RANGE);
+    assert_string_equal(error.field, "frames");
+    CHECK_STATUS(imk_schematic_animated(&settings, 0, 121, NULL, &svg, &size, &error),
+                 IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_schematic_animated(&settings, 0.5, 0, NULL, &svg, &size, &error),
+                 IMK_ERROR_RANGE);
+    assert_string_equal(error.field, "seconds");
+    CHECK_STATUS(imk_schematic_animated(&settings, (double)NAN, 0, NULL, &svg, &size, &error),
+                 IMK_ERROR_RANGE);
+    design.cavity.perimeter = (double)NAN;
+    CHECK_STATUS(imk_schematic_svg(settings.instrument, &design, &svg, &size, &error),
+                 IMK_ERROR_NOT_FINITE);
+    assert_string_equal(error.field, "cavity.perimeter");
+    assert_null(svg);
 }
 
 static void test_parts(void **state)
@@ -355,6 +463,12 @@ static void test_sliders(void **state)
     for_each(check_sliders);
 }
 
+static void test_extremes(void **state)
+{
+    (void)state;
+    for_each(check_extremes);
+}
+
 static void test_animations(void **state)
 {
     (void)state;
@@ -364,9 +478,10 @@ static void test_animations(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_parts),      cmocka_unit_test(test_quantities),
-        cmocka_unit_test(test_drawings),   cmocka_unit_test(test_sliders),
-        cmocka_unit_test(test_animations),
+        cmocka_unit_test(test_parts),    cmocka_unit_test(test_quantities),
+        cmocka_unit_test(test_drawings), cmocka_unit_test(test_sliders),
+        cmocka_unit_test(test_extremes), cmocka_unit_test(test_animations),
+        cmocka_unit_test(test_values),   cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,7 +14,7 @@
 #include "io/foreign/parameter_internal.h"
 #include "io/log/log_formats_internal.h"
 #include "io/log/log_reader_internal.h"
-#include "io/plot/gnuplot_internal.h"
+#include "io/plot/drawing_program_internal.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -142,16 +142,18 @@ int fchmod(int file, mode_t mode)
 
 /* ---- programs and libraries ------------------------------------------------------------------ */
 
-bool imk_plot_available(void)
+bool imki_drawing_possible(imki_terminal terminal)
 {
+    (void)terminal;
     return false;
 }
 
-imk_status imki_gnuplot_draw(const imk_figure *figure, imki_drawing *drawing, char **image,
+imk_status imki_drawing_make(const imk_figure *figure, imki_drawing *drawing, char **image,
                              size_t *size, imk_error *error)
 {
     (void)figure, (void)drawing, (void)image, (void)size;
-    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", "gnuplot", "a name ending in .svg");
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", "another program",
+                         "a name ending in .svg");
 }
 
 static imk_status refuse(imk_log_reader *reader, imk_error *error)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Five grades navigate side by side for an hour: a unit at rest of each, simulated and navigated by
-// the verbs. Where they believe to be is drawn on one map.
+// Five grades navigate side by side for an hour: a unit at rest of each, simulated by the verb and
+// navigated as by the verb. Where they believe to be is drawn on one map.
 
 'use strict';
 
@@ -29,7 +29,7 @@ function showGrades(root) {
   const replay = new Replay({ seconds: 10, draw, button, name: 'Play an hour in ten seconds' });
   const follow = element('select', { id: 'follow', onchange: () => ((now.follow = follow.value), draw(replay.passed)) },
     element('option', { value: 'all' }, 'all: each ring is ten times farther'), gradeNames.map((name) => element('option', { value: name }, `grows with ${name}`)));
-  const simulate = (name) => ['simulate', name, '--rate', '10Hz', '--duration', '1h', '--run', String(now.run), '-o', 'rest.csv'];
+  const simulate = (name) => ['simulate', name, '--rate', '10Hz', '--duration', '1h', '--run', String(now.run), '-o', 'rest.npy'];
   const navigate = ['navigate', 'rest.csv', '--position', '45 deg, 10 deg, 0 m', '--attitude', '0 0 0 deg', '--interval', '6s', '-o', 'track.csv'];
 
   const compute = lastOnly(async () => {
@@ -40,8 +40,8 @@ function showGrades(root) {
       for (const name of gradeNames) {
         if (now.ended) return;
         status.textContent = `Navigating: ${name}…`;
-        const log = (await bench(simulate(name))).file('rest.csv');
-        tracks.push(csvColumns((await bench(navigate, { 'rest.csv': log })).file('track.csv')));
+        const log = (await bench(simulate(name))).file('rest.npy');
+        tracks.push(await reckon(log, 0, 60));
       }
       now.tracks = tracks;
       status.textContent = '';
@@ -55,11 +55,11 @@ function showGrades(root) {
 
   function draw(passed) {
     if (!now.tracks.length) return;
-    const count = now.tracks[0]['time [s]'].length, end = Math.round(passed * (count - 1));
-    const far = now.tracks.map((track) => Math.hypot(track['north [m]'][end], track['east [m]'][end]));
+    const count = now.tracks[0].time.length, end = Math.round(passed * (count - 1));
+    const far = now.tracks.map((track) => Math.hypot(track.north[end], track.east[end]));
     const followed = now.tracks[gradeNames.indexOf(now.follow)];
     let farthest = 0;
-    if (followed) for (let k = 0; k <= end; k++) farthest = Math.max(farthest, Math.hypot(followed['north [m]'][k], followed['east [m]'][k]));
+    if (followed) for (let k = 0; k <= end; k++) farthest = Math.max(farthest, Math.hypot(followed.north[k], followed.east[k]));
     const { radius, rings: distances } = mapScale(!followed, farthest);
     rings.replaceChildren(...distances.flatMap((metres) => {
       const text = svg('text', { x: 3, y: -radius(metres) - 3 });
@@ -72,7 +72,7 @@ function showGrades(root) {
   }
 
   function drawTrack(track, g, end, radius) {
-    const north = track['north [m]'], east = track['east [m]'];
+    const north = track.north, east = track.east;
     let path = 'M0 0', x = 0, y = 0;
     for (let k = 0; k <= end; k++) {
       const metres = Math.hypot(north[k], east[k]), r = metres > 0 ? Math.min(radius(metres), 2000) / metres : 0;
@@ -92,7 +92,7 @@ function showGrades(root) {
       element('div', { class: 'slider wide' }, element('label', { for: 'follow' }, 'Scale of the map'), follow), status,
       element('table', {}, element('thead', {}, element('tr', {}, element('th', { scope: 'col' }, 'grade'), element('th', { scope: 'col' }, 'from the truth'))),
         element('tbody', {}, gradeNames.map((name, g) => element('tr', {}, element('th', { scope: 'row', class: `g${g}` }, name), cells[g])))))),
-    terminalText(...gradeNames.slice(0, 1).map((name) => 'imukit ' + simulate(name).join(' ')), 'imukit ' + navigate.map((word) => (word.includes(' ') ? `"${word}"` : word)).join(' '), '# and so for navigation, tactical, AHRS and control; how far off on the average: imukit drift strategic navigation tactical AHRS control --duration 1h'));
+    terminalText(...gradeNames.slice(0, 1).map((name) => 'imukit ' + simulate(name).join(' ').replace('.npy', '.csv')), 'imukit ' + navigate.map((word) => (word.includes(' ') ? `"${word}"` : word)).join(' '), '# and so for navigation, tactical, AHRS and control; how far off on the average: imukit drift strategic navigation tactical AHRS control --duration 1h'));
   compute();
   return () => {
     now.ended = true;

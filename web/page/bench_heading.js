@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A bias that is turned on and off while a unit at rest navigates: the heading runs away and stays.
-// Each stretch between two switches is simulated and navigated by the verbs, from the heading that
-// the last one had.
+// Each stretch between two switches is simulated by the verb and navigated as by the verb, from the
+// heading that the last one had.
 
 'use strict';
 
 function showHeading(root) {
   const pace = 30, stretch = 600; // simulated seconds for each on the screen; of a stretch
-  const now = { on: true, size: '60 deg/h', from: 0, at: 0, run: 0, heading: 0, yaw: null, screen: 0, playing: false, turn: 0 };
+  const now = { on: true, size: '60 deg/h', from: 0, at: 0, run: 0, heading: 0, yaw: null, screen: 0, playing: false, hold: false };
   const needle = svg('g', {}, svg('path', { class: 'needle', d: 'M0 -78L7 10L0 0L-7 10Z' }));
   const letters = [['N', 0, -88], ['E', 92, 5], ['S', 0, 99], ['W', -92, 5]].map(([letter, x, y]) => { const text = svg('text', { x, y, 'text-anchor': 'middle' }); text.textContent = letter; return text; });
   const compass = svg('svg', { viewBox: '-110 -110 220 220', role: 'img', 'aria-label': 'Compass: the heading that the unit believes; the truth is north', class: 'compass' },
@@ -24,20 +24,19 @@ function showHeading(root) {
   }
   /** What follows from the present heading on. */
   const compute = lastOnly(async () => {
-    const turn = ++now.turn;
-    const simulate = ['simulate', 'heading.yaml', '--rate', '10Hz', '--duration', `${stretch}s`, '--run', String(now.run), '-o', 'rest.csv'];
+    now.hold = true; // the clock stands until it is known how the heading goes on
+    const simulate = ['simulate', 'heading.yaml', '--rate', '10Hz', '--duration', `${stretch}s`, '--run', String(now.run), '-o', 'rest.npy'];
     const navigate = ['navigate', 'rest.csv', '--position', '45 deg, 10 deg, 0 m', '--attitude', `0 0 ${now.heading.toFixed(6)} deg`, '--interval', '1s', '-o', 'track.csv'];
     try {
-      const log = (await bench(simulate, { 'heading.yaml': model() })).file('rest.csv');
-      const track = csvColumns((await bench(navigate, { 'rest.csv': log })).file('track.csv'));
-      if (turn !== now.turn) return;
-      Object.assign(now, { yaw: track['yaw [deg]'], from: now.at });
+      const log = (await bench(simulate, { 'heading.yaml': model() })).file('rest.npy');
+      Object.assign(now, { yaw: (await reckon(log, now.heading, 10)).heading, from: now.at });
       now.run++;
       problem.textContent = '';
-      place.replaceChildren(terminalText('# heading.yaml', model(), 'imukit ' + simulate.join(' '), 'imukit ' + navigate.map((word) => (word.includes(' ') ? `"${word}"` : word)).join(' ')));
+      place.replaceChildren(terminalText('# heading.yaml', model(), 'imukit ' + simulate.join(' ').replace('.npy', '.csv'), 'imukit ' + navigate.map((word) => (word.includes(' ') ? `"${word}"` : word)).join(' ')));
     } catch (reason) {
       problem.textContent = reason.message;
     }
+    now.hold = false;
   });
   function change(act) {
     act();
@@ -60,7 +59,7 @@ function showHeading(root) {
     requestAnimationFrame(frame);
     const passed = now.last === null ? 0 : Math.min(time - now.last, 100) / 1000;
     now.last = time;
-    if (!now.yaw) return;
+    if (!now.yaw || now.hold) return;
     now.at += pace * passed;
     now.screen += passed;
     const row = Math.min(Math.floor(now.at - now.from), now.yaw.length - 1);

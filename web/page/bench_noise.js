@@ -23,6 +23,7 @@ const loudspeaker = {
     this.stop();
     if (same) return;
     this.context ||= new AudioContext();
+    this.context.resume();
     const buffer = this.context.createBuffer(1, samples.length, rate), gain = this.context.createGain();
     const limits = samples.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
     const middle = (limits[0] + limits[1]) / 2, reach = (limits[1] - limits[0]) / 2 || 1;

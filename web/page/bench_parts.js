@@ -20,6 +20,14 @@ function csvColumns(bytes) {
   return Object.fromEntries(names.map((name, c) => [name, columns[c]]));
 }
 
+/** Navigate a log of a unit at rest (core/reckon.c). `log`: bytes of a .npy of simulate; heading at
+ *  the start [deg]; rows between reports. Gives columns. */
+async function reckon(log, heading, every) {
+  const { track } = await askLive('reckon', log, heading, every);
+  const column = (c) => Float64Array.from({ length: track.length / 4 }, (_, row) => track[4 * row + c]);
+  return { time: column(0), north: column(1), east: column(2), heading: column(3) };
+}
+
 /** What is asked while something runs is done when it ends; of several the last. */
 function lastOnly(act) {
   let running = false, next = null;

@@ -40,9 +40,8 @@ class Engine {
   async ask(message, progress) {
     const id = this.next++;
     const answer = new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject, progress, isVerb: Boolean(message.words) }));
-    const begun = this.start();
-    begun.then((worker) => this.waiting.has(id) && worker.postMessage({ id, ...message }),
-      (reason) => this.fail(reason));
+    this.start().then((worker) => this.waiting.has(id) && worker.postMessage({ id, ...message }))
+      .catch((reason) => this.fail(reason));
     return answer;
   }
 

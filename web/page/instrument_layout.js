@@ -6,7 +6,7 @@
 function layOutInstrument(view, answer) {
   const { about } = answer;
   view.drawing = element('div', {});
-  view.charts = [makeChart('Output', about.outputs, 0, 0), makeChart('Signal', about.signals, about.outputs.length, about.first_signal)];
+  view.charts = [makeChart('Output', about.outputs, 0, 0, about.rate), makeChart('Signal', about.signals, about.outputs.length, about.first_signal, about.rate)];
   view.quantities = element('div', {});
   view.terminal = element('pre', { tabindex: 0 });
   view.root.append(
@@ -31,12 +31,12 @@ function showSchematic(view, { schematic, about }) {
 }
 
 /** A chart with a choice of what it shows. */
-function makeChart(label, signals, first, chosen) {
+function makeChart(label, signals, first, chosen, rate) {
   const id = 'chart' + label;
   const nice = (name) => name.replace(/_/g, ' ');
-  const now = element('output', { class: 'number' }), unit = element('span', {});
+  const now = element('output', { class: 'number' });
   const place = element('div', {});
-  const made = { now, column: () => first + Number(select.value), input: () => first === 0 && Number(select.value) === 0 };
+  const made = { rate, now, column: () => first + Number(select.value), input: () => first === 0 && Number(select.value) === 0 };
   const select = element('select', { id, onchange: renew },
     signals.map(({ name, help }, i) => element('option', { value: i, title: help, selected: i === chosen }, nice(name))));
   function renew() {
@@ -44,11 +44,17 @@ function makeChart(label, signals, first, chosen) {
     if (made.chart) made.chart.end();
     made.chart = new StripChart({ label: `${nice(signal.name)} against time on the screen`, unit: signal.unit, names: made.input() ? ['output', 'input'] : ['signal'] });
     place.replaceChildren(made.chart.root);
-    unit.textContent = signal.unit === '1' ? '' : signal.unit;
-    made.help.textContent = signal.help + (made.input() ? '; dashed: the true input' : '');
+    made.unit = signal.unit === '1' ? '' : ' ' + signal.unit;
+    made.sample();
   }
+  // What one sample is, which at a slow pace is much less than what a reading needs.
+  made.sample = (rate = made.rate) => {
+    made.rate = rate;
+    const short = rate > 2e5 ? ' So short a time shows single counts and pulses: nearer to real time they are means.' : '';
+    made.help.textContent = signals[Number(select.value)].help + (made.input() ? `; dashed: the true input. A sample lasts ${timeText(1 / rate)}.${short}` : '');
+  };
   made.help = element('p', { class: 'weak' });
-  made.root = element('figure', {}, element('figcaption', {}, element('label', { for: id }, label + ' '), select, ' ', now, ' ', unit), place, made.help);
+  made.root = element('figure', {}, element('figcaption', {}, element('label', { for: id }, label + ' '), select, ' ', now), place, made.help);
   renew();
   return made;
 }

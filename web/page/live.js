@@ -9,6 +9,8 @@
 //   restart []                            { problem }, from power-on
 //   look    []                            { about }
 //   step    [seconds on the screen]       { rows, width, moment }
+//   reckon  [bytes of a .npy of simulate, heading, rows between reports]
+//                                         { track }: see core/reckon.c
 //
 // `rows` is one Float64Array of `width` numbers a row: time, outputs, signals, in the
 // units of a log.
@@ -53,7 +55,18 @@ class LiveInstrument {
     return new Float64Array(this.exports.memory.buffer, at, count).slice();
   }
 
+  /** Navigate a log of a unit at rest: time, three rates, three forces a row. */
+  reckon(bytes, heading, every) {
+    const header = 10 + bytes[8] + 256 * bytes[9];
+    const log = new Float64Array(bytes.slice(header).buffer), rows = log.length / 7;
+    const place = this.exports.reckon_room(rows), room = new Float64Array(this.exports.memory.buffer, place, 6 * rows);
+    for (let k = 0; k < rows; k++) room.set(log.subarray(7 * k + 1, 7 * k + 7), 6 * k);
+    const at = this.exports.reckon(rows, (log[7 * (rows - 1)] - log[0]) / (rows - 1), heading, every);
+    return { track: this.numbers(at, 4 * (Math.floor(rows / every) + 1)) };
+  }
+
   do(what, values) {
+    if (what === 'reckon') return this.reckon(...values);
     if (what === 'step') {
       const count = this.exports.live_step(...values);
       return {
@@ -76,7 +89,10 @@ async function doLive({ id, live: what, values }) {
     system.memory = exports.memory;
     live.instance = new LiveInstrument(exports);
   }
-  const answer = live.instance.do(what, values);
+  const instance = live.instance;
+  live.instance = null; // should it fail, the next has a new one
+  const answer = instance.do(what, values);
+  live.instance = instance;
   postMessage({ id, ...answer }, answer.rows ? [answer.rows.buffer, answer.moment.buffer] : []);
 }
 

@@ -95,6 +95,6 @@ function drawPose(up, words = poseWords(up)) {
   const faces = [0, 1, 2].flatMap((axis) => [1, -1].map((side) => poseFaceElement(turn, axis, side, place))).filter(Boolean);
   const arrows = [0, 1, 2].map((axis) => ({ behind: isBehind(axis), drawn: poseArrow(turn, axis, place) }));
   return svgElement('svg', { class: 'pose', viewBox: '0 0 200 180', role: 'img', 'aria-label': words },
-    svgElement('polygon', { class: 'table', points: ground }), ...arrows.filter(({ behind }) => behind).map(({ drawn }) => drawn), ...faces,
+    svgElement('polygon', { class: 'ground', points: ground }), ...arrows.filter(({ behind }) => behind).map(({ drawn }) => drawn), ...faces,
     ...arrows.filter(({ behind }) => !behind).map(({ drawn }) => drawn));
 }

@@ -4,12 +4,13 @@
 
 'use strict';
 
-/** A drawing with styles and names of its own, and its moving parts in the order given. */
+/** A drawing with styles and names of its own, and its moving parts in the order given. Its pace is
+ *  left out, which the page lets choose. */
 function importSchematic(text, about) {
   const host = element('div', { class: 'schematic' });
   const shadow = host.attachShadow({ mode: 'open' });
   const svg = document.importNode(new DOMParser().parseFromString(text, 'image/svg+xml').documentElement, true);
-  shadow.append(element('style', {}, 'svg { display: block; width: 100%; height: auto; }'), svg);
+  shadow.append(element('style', {}, 'svg { display: block; width: 100%; height: auto; } .pace { display: none; }'), svg);
   const parts = about.parts.map(({ id, move, origin }) => ({ group: svg.getElementById(id), move, origin }));
   return { host, parts };
 }
@@ -25,6 +26,7 @@ const partMoves = {
 
 function placePart({ group, move, origin }, value) {
   if (!group || !Number.isFinite(value)) return;
+  value = Math.max(-1e6, Math.min(1e6, value)); // farther away is not drawn
   if (move === 'glow') group.style.opacity = value;
   else if (move === 'flow') group.style.strokeDashoffset = value;
   else {

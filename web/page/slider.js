@@ -13,7 +13,7 @@ function shownNumber(value) {
   if (!Number.isFinite(value)) return '–';
   const size = Math.abs(value);
   if (size !== 0 && (size < 1e-3 || size >= 1e6)) return value.toExponential(3).replace('e+', 'e').replace('-', '−');
-  return value.toPrecision(4).replace('-', '−');
+  return (size >= 1e4 ? value.toFixed(0) : value.toPrecision(4)).replace('-', '−');
 }
 
 let sliderCount = 0;

@@ -92,22 +92,59 @@ class StripChart {
     pen.beginPath();
     pen.rect(left, 0, width - left, height);
     pen.clip();
-    this.curves.forEach((curve, c) => {
-      pen.beginPath();
-      let open = false;
-      for (let k = 0; k < this.count; k++) {
-        const i = (this.first + k) % this.room;
-        if (this.time[i] < begin - 0.1) continue;
-        if (Number.isNaN(curve[i])) open = false;
-        else if (open) pen.lineTo(x(this.time[i]), y(curve[i]));
-        else pen.moveTo(x(this.time[i]), y(curve[i])), (open = true);
-      }
-      pen.strokeStyle = this.paint[c];
-      pen.lineWidth = c ? 1 : 1.5;
-      pen.setLineDash(c ? [5, 4] : []);
-      pen.stroke();
-    });
+    if (this.curves[1]) this.drawLine(pen, this.curves[1], 1, begin, x, y);
+    if (this.count > 1.2 * (width - left)) this.drawColumns(pen, this.curves[0], end, width - left - 4, y);
+    else this.drawLine(pen, this.curves[0], 0, begin, x, y);
     pen.restore();
+  }
+
+  /** A line through the values; what stays the same is one piece. */
+  drawLine(pen, curve, c, begin, x, y) {
+    let open = false, last = NaN;
+    pen.beginPath();
+    for (let k = 0; k < this.count; k++) {
+      const i = (this.first + k) % this.room, value = curve[i];
+      if (this.time[i] < begin - 0.1) continue;
+      if (c && open && value === last && k < this.count - 1) continue;
+      if (Number.isNaN(value)) open = false;
+      else if (open) {
+        if (c) pen.lineTo(x(this.time[i]), y(last));
+        pen.lineTo(x(this.time[i]), y(value));
+      } else pen.moveTo(x(this.time[i]), y(value)), (open = true);
+      last = value;
+    }
+    pen.strokeStyle = this.paint[c];
+    pen.lineWidth = c ? 1 : 1.5;
+    pen.setLineDash(c ? [5, 4] : []);
+    pen.stroke();
+  }
+
+  /** Of more values than pixels the least and the largest of each column, as upright bars: much less
+   *  work than a line that goes to and fro. Columns belong to times, so that they do not flicker. */
+  drawColumns(pen, curve, end, columns, y) {
+    const each = this.seconds / columns, latest = Math.floor(end / each);
+    let column = null, low = 0, high = 0, before = NaN;
+    pen.fillStyle = this.paint[0];
+    const put = () => pen.fillRect(this.width - 4 - (latest - column), y(high) - 0.75, 1, y(low) - y(high) + 1.5);
+    for (let k = 0; k < this.count; k++) {
+      const i = (this.first + k) % this.room, at = Math.floor(this.time[i] / each), value = curve[i];
+      if (at < latest - columns) continue;
+      if (Number.isNaN(value)) {
+        if (column !== null) put();
+        column = null;
+        before = NaN;
+        continue;
+      }
+      if (at !== column) {
+        if (column !== null) put();
+        [column, low, high] = [at, value, value];
+        if (before < low) low = before;
+        if (before > high) high = before;
+      } else if (value < low) low = value;
+      else if (value > high) high = value;
+      before = value;
+    }
+    if (column !== null) put();
   }
 
   drawGrid(pen, left, y) {

@@ -50,7 +50,7 @@ function sectionOf(article, title) {
 /** A line of the command with a button that copies it. */
 function terminalLine(lines, title = 'The same at a terminal') {
   const text = lines.map(commandLine).join('\n');
-  return element('div', { class: 'terminal', 'data-part': 'terminal' }, element('h3', {}, title),
+  return element('div', { class: 'terminal', 'data-part': 'terminal' }, element('p', {}, title),
     element('pre', { tabindex: '0' }, text),
     element('button', { type: 'button', onclick: () => copyText(text) }, 'Copy'));
 }
@@ -116,7 +116,7 @@ class VerbView {
     this.problem.replaceChildren();
     if (!error) return;
     this.problem.append(element('p', {}, error.message));
-    if (error.next) this.problem.append(element('pre', { tabindex: '0' }, error.next));
+    if (error.next) this.problem.append(element('pre', { tabindex: '0' }, error.next.replace(' --json', '')));
   }
 
   /** Do a verb and give what it did, with `json`; null when it was cancelled or gave nothing.

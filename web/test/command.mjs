@@ -27,6 +27,14 @@ export function byPage(words, files = []) {
     files: new Map(made.map((name) => [name, Buffer.from(system.file(name))])) };
 }
 
+/** Functions of a module that does no verb. */
+export function moduleFunctions() {
+  const system = new PageSystem({ words: [], files: [] });
+  const { exports } = new WebAssembly.Instance(compiled, system.imports);
+  system.memory = exports.memory;
+  return exports;
+}
+
 export function byCommand(words, files = []) {
   const folder = mkdtempSync(join(tmpdir(), 'imukit-web-'));
   try {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Figures as files and on the terminal: SVG is drawn here (report/figure_svg.c), the rest by
- * gnuplot. A drawing is written as any output file is, so it appears complete or not at all. */
+/* Figures as files and on the terminal: SVG is drawn here (report/figure_svg.c), PNG and PDF are
+ * made of it by rsvg-convert, letters by gnuplot. A drawing is written as any output file is, so it
+ * appears complete or not at all. */
 #define _DEFAULT_SOURCE
-#include "gnuplot_internal.h"
+#include "drawing_program_internal.h"
 
 #include "report/figure_internal.h"
 
@@ -40,42 +41,47 @@ static imk_status write_file(const char *path, const char *text, size_t size, im
     return imk_output_file_commit(file, error);
 }
 
-static imk_status draw_with_gnuplot(const imk_figure *figure, const char *path,
-                                    imki_terminal terminal, char **image, size_t *size,
-                                    imk_error *error)
+/* What a name asks for, other than SVG. @return false: another ending */
+static bool terminal_of(const char *path, imki_terminal *terminal)
+{
+    *terminal = strcmp(path, "term") == 0      ? IMKI_TERMINAL_TEXT
+                : imk_has_ending(path, ".pdf") ? IMKI_TERMINAL_PDF
+                                               : IMKI_TERMINAL_PNG;
+    return *terminal != IMKI_TERMINAL_PNG || imk_has_ending(path, ".png");
+}
+
+bool imk_plot_available(const char *path)
+{
+    imki_terminal terminal;
+    return imk_has_ending(path, ".svg") ||
+           (terminal_of(path, &terminal) && imki_drawing_possible(terminal));
+}
+
+static imk_status draw_by_program(const imk_figure *figure, imki_terminal terminal, char **image,
+                                  size_t *size, imk_error *error)
 {
     imki_drawing drawing = {.terminal = terminal};
-    const bool in_letters = terminal == IMKI_TERMINAL_TEXT;
-    if (!imk_plot_available())
-        return imk_error_set(
-            error, IMK_ERROR_UNSUPPORTED, in_letters ? "plot" : path, "gnuplot is not installed",
-            in_letters
-                ? "install it: apt install gnuplot-nox"
-                : "install it: apt install gnuplot-nox; a file ending in .svg needs no gnuplot");
-    if (in_letters) {
+    if (terminal == IMKI_TERMINAL_TEXT) {
         const char *no_color = getenv("NO_COLOR");
         terminal_size(&drawing.width, &drawing.height, figure->panel_count);
         drawing.color = isatty(STDOUT_FILENO) && !(no_color && *no_color);
     }
-    return imki_gnuplot_draw(figure, &drawing, image, size, error);
+    return imki_drawing_make(figure, &drawing, image, size, error);
 }
 
 imk_status imk_figure_write(const imk_figure *figure, const char *path, imk_error *error)
 {
     const bool in_letters = strcmp(path, "term") == 0;
+    imki_terminal terminal;
     char *image = NULL;
     size_t size = 0;
     imk_status status = imki_figure_check(figure, error);
     if (status != IMK_OK)
         return status;
-    if (in_letters)
-        status = draw_with_gnuplot(figure, path, IMKI_TERMINAL_TEXT, &image, &size, error);
-    else if (imk_has_ending(path, ".svg"))
+    if (imk_has_ending(path, ".svg"))
         status = imk_figure_svg(figure, &image, &size, error);
-    else if (imk_has_ending(path, ".png"))
-        status = draw_with_gnuplot(figure, path, IMKI_TERMINAL_PNG, &image, &size, error);
-    else if (imk_has_ending(path, ".pdf"))
-        status = draw_with_gnuplot(figure, path, IMKI_TERMINAL_PDF, &image, &size, error);
+    else if (terminal_of(path, &terminal))
+        status = draw_by_program(figure, terminal, &image, &size, error);
     else
         return imk_error_set(error, IMK_ERROR_FORMAT, "plot", path,
                              "a name ending in .svg, .png or .pdf, or the word term");
@@ -92,6 +98,21 @@ imk_status imk_animation_write(const imk_animation *animation, const char *path,
     if (!imk_has_ending(path, ".svg"))
         return imk_error_set(error, IMK_ERROR_FORMAT, "animation", path, "a name ending in .svg");
     imk_status status = imk_animation_svg(animation, &svg, &size, error);
+    if (status == IMK_OK) {
+        status = write_file(path, svg, size, error);
+        free(svg);
+    }
+    return status;
+}
+
+imk_status imk_schematic_write(const imk_physics_log_settings *settings, double seconds,
+                               size_t frames, const char *path, imk_error *error)
+{
+    char *svg;
+    size_t size;
+    if (strcmp(path, "-") != 0 && !imk_has_ending(path, ".svg"))
+        return imk_error_set(error, IMK_ERROR_FORMAT, "schematic", path, "a name ending in .svg");
+    imk_status status = imk_schematic_animated(settings, seconds, frames, NULL, &svg, &size, error);
     if (status == IMK_OK) {
         status = write_file(path, svg, size, error);
         free(svg);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The folder gnuplot runs in. Script, numbers and drawing have fixed names in it: a name that
- * begins with | or < is a command to gnuplot, so it sees none that the user or the environment
- * chose. */
+/* The folder gnuplot or rsvg-convert runs in. Script or SVG, numbers and drawing have fixed names
+ * in it: a name that begins with | or < is a command to gnuplot, so it sees none that the user or
+ * the environment chose. */
 #define _GNU_SOURCE /* nftw(), mkdtemp() */
 #include "scratch_folder_internal.h"
 
@@ -19,7 +19,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-const char *const imki_scratch_names[IMKI_SCRATCH_FILES] = {"figure.gp", "figure.dat", "figure.out",
+const char *const imki_scratch_names[IMKI_SCRATCH_FILES] = {"figure.in", "figure.dat", "figure.out",
                                                             "figure.err"};
 
 static bool means_full(int number)
@@ -73,7 +73,7 @@ static int remove_entry(const char *path, const struct stat *about, int kind, st
     return 0;
 }
 
-/* gnuplot, or what it has started, may have made files of its own. */
+/* The program, or what it has started, may have made files of its own. */
 void imki_scratch_remove(imki_scratch *s)
 {
     for (int i = 0; i < IMKI_SCRATCH_FILES; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The private temporary folder in which gnuplot draws. */
+/* The private temporary folder in which a program draws. */
 #ifndef IMUKIT_SCRATCH_FOLDER_INTERNAL_H
 #define IMUKIT_SCRATCH_FOLDER_INTERNAL_H
 
@@ -9,7 +9,7 @@
 
 /* The files in it, whose names are the same for every figure. */
 typedef enum imki_scratch_file {
-    IMKI_SCRATCH_SCRIPT = 0,
+    IMKI_SCRATCH_INPUT = 0,
     IMKI_SCRATCH_DATA,
     IMKI_SCRATCH_OUTPUT,
     IMKI_SCRATCH_SAID,

@@ -24,7 +24,7 @@ const imukitPage = (() => {
   /* Tell readers who hear the page; with `seen` those who see it, too, for two seconds. */
   let heard = null, told = null, timer = 0;
   function say(text, seen) {
-    if (!heard) {
+    if (!heard || !heard.isConnected) {
       heard = html('div', {class: 'unseen', 'aria-live': 'polite', role: 'status'});
       told = html('div', {class: 'told', 'aria-hidden': true, hidden: ''});
       const place = document.querySelector('.imukit');
@@ -119,32 +119,41 @@ const imukitPage = (() => {
 
   /* ---- light and dark ------------------------------------------------------------------------ */
 
-  /* The condition of the rules for a dark screen, which a reader's choice replaces. */
+  /* The condition of the rules for a dark screen, which the reader's choice replaces. */
   function darkConditions() {
     return [...document.styleSheets].flatMap(sheet => [...sheet.cssRules])
       .filter(rule => rule.media && /prefers-color-scheme:\s*dark/.test(rule.media.mediaText))
       .map(rule => rule.media);
   }
 
+  /* Drawings can have rules of their own, also such that are put into the page later. */
+  let conditions = [], darkness = null;
+  function setDark(dark) {
+    darkness = dark;
+    conditions = [...conditions, ...darkConditions()];
+    conditions.forEach(media => { media.mediaText = dark ? 'screen' : 'not all'; });
+  }
+  const keepDark = () => darkness !== null && setDark(darkness);
+
+  /* A button that changes the page from light to dark and back. */
   function attachTheme(article) {
-    const conditions = darkConditions(), system = matchMedia('(prefers-color-scheme: dark)');
+    const system = matchMedia('(prefers-color-scheme: dark)');
     let dark = system.matches, chosen = false;
-    const made = html('button', {type: 'button', class: 'theme'});
     const label = () => { made.textContent = dark ? 'Light page' : 'Dark page'; };
+    const made = html('button', {type: 'button', class: 'theme'});
     made.addEventListener('click', () => {
       dark = !dark;
       chosen = true;
-      conditions.forEach(media => { media.mediaText = dark ? 'screen' : 'not all'; });
+      setDark(dark);
       label();
     });
     system.addEventListener('change', () => {
-      if (!chosen)
-        dark = system.matches;
+      dark = chosen ? dark : system.matches;
       label();
     });
     label();
     article.prepend(made);
   }
 
-  return {html, button, say, attachTable, attachTheme};
+  return {html, button, say, attachTable, attachTheme, setDark, keepDark};
 })();

@@ -3,7 +3,8 @@
  * fetched and nothing is stored.
  *
  * imukitFigures.attach(element) does it for all that is below an element, such as an article that
- * was put into a page later. What is interactive already stays as it is. */
+ * was put into a page later. What is interactive already stays as it is. imukitFigures.setDark(true)
+ * makes the page dark, whatever the system is; false: light. */
 'use strict';
 
 const imukitFigures = (() => {
@@ -12,10 +13,11 @@ const imukitFigures = (() => {
   const {html, button, say} = imukitPage;
   const zoomStep = 1.5, dragLeast = 6, reach = 60; // factor, [px], [px]
 
-  /* "averaging time [s]" is a name and a unit. */
+  /* "root density [ug/sqrt(Hz)], two-sided" is a name and a unit. */
   function nameAndUnit(label) {
-    const found = /^(.*?)\s*\[([^\]]*)\]\s*$/.exec(label);
-    return found ? {name: found[1], unit: found[2] === '1' ? '' : found[2]} : {name: label, unit: ''};
+    const found = /^(.*?)\s*\[([^\]]*)\](.*)$/.exec(label);
+    return found ? {name: found[1] + found[3], unit: found[2] === '1' ? '' : found[2]}
+      : {name: label, unit: ''};
   }
 
   /* Curves with points; one without a name goes with the first of its colour that has one. */
@@ -45,7 +47,7 @@ const imukitFigures = (() => {
         button('−', 'Zoom out', () => this.zoom(zoomStep)),
         button('↺', 'Show all', () => this.show(null)));
       this.listen();
-      new ResizeObserver(() => this.later()).observe(root);
+      new ResizeObserver(() => Math.floor(root.clientWidth) !== this.width && this.later()).observe(root);
     }
 
     name() {
@@ -76,6 +78,7 @@ const imukitFigures = (() => {
       const width = Math.floor(this.root.clientWidth);
       if (width < 40) // is not shown
         return;
+      this.width = width;
       const ratio = this.alone ? 0.6 : this.data.regions.length > 0 ? 0.74 : 0.8;
       const height = Math.round(Math.max(250, Math.min(560, ratio * width)));
       const drawing = imukitPanel.draw(this, width, height);
@@ -142,8 +145,8 @@ const imukitFigures = (() => {
       if (part) {
         for (const name of ['x', 'y']) {
           const {low, high} = part[name], all = this.data[name];
-          const least = (all.high - all.low) * (all.log ? 1e-3 : 1e-6);
-          if (high - low > least && high - low < 1e3 * (all.high - all.low))
+          const span = (high - low) / (all.high - all.low);
+          if (span > (all.log ? 1e-3 : 1e-6) && span < 8)
             Object.assign(this[name], {low, high});
         }
         this.zoomed = true;
@@ -199,34 +202,57 @@ const imukitFigures = (() => {
           const distance = (spot.x - x) ** 2 + dy ** 2 + far;
           if (distance < least) {
             least = distance;
-            best = {curve, index};
+            best = {curve, index, distance};
           }
         });
       }
       return best;
     }
 
-    /* The interval of a point: its own, or that of the band in its colour. */
-    intervalOf(curve, point) {
-      if (point.lower !== undefined)
-        return point;
-      const band = this.curves.find(c => c.style === 'band' && !c.label && c.color === curve.color);
-      return band && band.points.find(p => p && Math.abs(p.x - point.x) <= 1e-6 * Math.abs(point.x));
+    /* What is told of a point, line by line: the curve, x, y, the interval. A layer's value is its
+     * height. */
+    linesOf({curve, index}) {
+      const point = curve.points[index], {lower, upper} = point, layer = curve.style === 'layer';
+      const told = [curve.label || curve.group || this.data.title, this.quantity('x', point.x)];
+      if (point.y !== undefined || layer)
+        told.push(this.quantity('y', layer ? upper - lower : point.y));
+      if (lower !== undefined && lower !== null && !layer)
+        told.push(this.quantity('y', lower, upper, point.y === undefined ? '' : 'interval'));
+      return told;
     }
 
-    /* What is told of a point, line by line: the curve, x, y, the interval. */
-    linesOf({curve, index}) {
-      const point = curve.points[index], x = nameAndUnit(this.data.x.label);
-      const y = nameAndUnit(this.data.y.label), interval = this.intervalOf(curve, point);
-      const value = (v, axis, unit) => `${number(v, digitsFor(axis))}${unit ? ` ${unit}` : ''}`;
-      const told = [curve.label || curve.group || this.data.title,
-        `${x.name}: ${value(point.x, this.data.x, x.unit)}`];
-      if (point.y !== undefined)
-        told.push(`${y.name}: ${value(point.y, this.data.y, y.unit)}`);
-      if (interval)
-        told.push(`${point.y === undefined ? y.name : 'interval'}: ` +
-          `${value(interval.lower, this.data.y, '')} to ${value(interval.upper, this.data.y, y.unit)}`);
-      return told;
+    /* "averaging time: 10.24 s", or with an upper limit "… to …". */
+    quantity(axis, value, upper, instead) {
+      const {name, unit} = nameAndUnit(this.data[axis].label), digits = digitsFor(this.data[axis]);
+      const text = v => v === null ? 'open' : number(v, digits);
+      return `${instead || name}: ${text(value)}${upper === undefined ? '' : ` to ${text(upper)}`}` +
+        `${unit ? ` ${unit}` : ''}`;
+    }
+
+    /* The smallest region at a place, where no point is near. */
+    regionAt(x, y) {
+      return this.data.regions.map(region => ({region, box: imukitPanel.boxOf(this, region)}))
+        .filter(({box}) => x >= box.left && x <= box.right && y >= box.top && y <= box.bottom)
+        .sort((a, b) => (a.box.right - a.box.left) * (a.box.bottom - a.box.top) -
+          (b.box.right - b.box.left) * (b.box.bottom - b.box.top)).map(({region}) => region)[0];
+    }
+
+    /* Tell what is at a place [px]. */
+    hover(x, y) {
+      const at = this.nearest(x, y), region = this.regionAt(x, y);
+      this.point(at && region && at.distance > reach ** 2 / 4 ? null : at);
+      if (this.pointed || !region)
+        return;
+      const [xLow, xHigh, yLow, yHigh] = region.limits;
+      this.tell([region.label, this.quantity('x', xLow, xHigh), this.quantity('y', yLow, yHigh)],
+        {x, y});
+    }
+
+    tell(lines, spot) {
+      this.readout.replaceChildren(html('b', {}, lines[0]),
+        ...lines.slice(1).map(text => html('div', {}, text)));
+      this.readout.hidden = false;
+      this.placeReadout(spot);
     }
 
     /* Show a point, or none; `aloud` for readers who hear the page. */
@@ -243,9 +269,7 @@ const imukitFigures = (() => {
         svg('path', {class: 'cross',
           d: `M${spot.x} ${frame.top}V${frame.bottom}M${frame.left} ${spot.y}H${frame.right}`}),
         svg('circle', {class: `spot c${at.curve.color}`, cx: spot.x, cy: spot.y, r: 4.5}));
-      this.readout.replaceChildren(html('b', {}, told[0]),
-        ...told.slice(1).map(text => html('div', {}, text)));
-      this.placeReadout(spot);
+      this.tell(told, spot);
       if (aloud)
         say(told.join(', '), false);
     }
@@ -311,15 +335,17 @@ const imukitFigures = (() => {
         const at = here(event);
         if (event.button !== 0)
           return;
+        if (event.pointerType === 'touch') // what was told elsewhere goes
+          plot.focus({preventScroll: true});
         if (event.pointerType === 'touch' && !this.zoomed)
-          return void this.point(this.nearest(at.x, at.y));
+          return void this.hover(at.x, at.y);
         this.drag = {from: at, to: at, moves: event.shiftKey || event.pointerType === 'touch'};
         plot.setPointerCapture(event.pointerId);
       });
       plot.addEventListener('pointermove', event => {
         const at = here(event);
         if (!this.drag)
-          return void this.point(this.nearest(at.x, at.y));
+          return void this.hover(at.x, at.y);
         if (this.drag.moves)
           this.move((this.drag.to.x - at.x) / this.frame.width, (at.y - this.drag.to.y) / this.frame.height);
         this.drag.to = at;
@@ -332,10 +358,13 @@ const imukitFigures = (() => {
         if (drag && !drag.moves)
           this.choose(drag);
         if (drag && event.pointerType === 'touch')
-          this.point(this.nearest(here(event).x, here(event).y));
+          this.hover(here(event).x, here(event).y);
       });
       plot.addEventListener('pointercancel', () => { this.drag = null; });
-      plot.addEventListener('pointerleave', () => this.drag || this.point(null));
+      plot.addEventListener('pointerleave', event => {
+        if (!this.drag && event.pointerType !== 'touch') // a finger always leaves
+          this.point(null);
+      });
       plot.addEventListener('blur', () => this.point(null));
       plot.addEventListener('dblclick', () => this.show(null));
       plot.addEventListener('wheel', event => {
@@ -426,9 +455,10 @@ const imukitFigures = (() => {
     }
     fresh(root, '.imukit .table').forEach(imukitPage.attachTable);
     fresh(root, '.imukit-page .imukit').forEach(imukitPage.attachTheme);
+    imukitPage.keepDark();
   }
 
-  return {attach};
+  return {attach, setDark: imukitPage.setDark};
 })();
 
 imukitFigures.attach(document);

@@ -11,6 +11,13 @@ const imukitOverlay = (() => {
   const colors = [3, 4, 5, 2, 1, 0, 6, 7];
   const isDeviation = name => ['adev', 'oadev', 'totdev'].includes(name);
 
+  /* A point in a unit that is `scale` times as small. */
+  function scaled(point, scale) {
+    const limits = point.lower !== undefined &&
+      {lower: point.lower * scale, upper: point.upper * scale};
+    return {x: point.x, y: point.y * scale, ...limits};
+  }
+
   /* ---- layers -------------------------------------------------------------------------------- */
 
   function layerOfSensor(catalogue, sensor) {
@@ -56,16 +63,10 @@ const imukitOverlay = (() => {
     const panels = [...page.querySelectorAll('.panel > script[type="application/json"]')];
     return panels.map(script => JSON.parse(script.textContent)).filter(data => data.allan)
       .flatMap(data => data.curves.filter(c => c.style === 'points' && c.label !== 'twin').map(curve => {
-        const band = data.curves.find(c => c.style === 'band' && !c.label && c.color === curve.color);
-        const limits = band ? imukitPanel.pointsOf(band) : [];
         const scale = data.unit ? data.unit.scale : 1;
         return {channel: curve.label === 'log' ? data.title : curve.label, style: 'points',
           si: data.unit && data.unit.si, unit: unitOf(data),
-          points: imukitPanel.pointsOf(curve).filter(Boolean).map(point => {
-            const limit = point.lower === undefined ? limits.find(l => l && l.x === point.x) : point;
-            return {x: point.x, y: point.y * scale, ...(limit &&
-              {lower: limit.lower * scale, upper: limit.upper * scale})};
-          })};
+          points: imukitPanel.pointsOf(curve).filter(Boolean).map(point => scaled(point, scale))};
       }));
   }
 
@@ -94,8 +95,7 @@ const imukitOverlay = (() => {
       const scale = data.unit && curve.si ? data.unit.scale : 1;
       const label = chosen.length > 1 ? `${layer.name} ${curve.channel}` : layer.name;
       return {label, group: label, style: curve.style, color: (color + i) % colors.length,
-        points: curve.points.map(p => ({x: p.x, y: p.y / scale,
-          ...(p.lower !== undefined && {lower: p.lower / scale, upper: p.upper / scale})}))};
+        bars: curve.style === 'points', points: curve.points.map(point => scaled(point, 1 / scale))};
     });
   }
 
@@ -105,8 +105,7 @@ const imukitOverlay = (() => {
     const group = (label, grade) => html('optgroup', {label}, ...catalogue.sensors
       .filter(sensor => sensor.grade === grade && (sensor['rad/s'] || sensor['m/s^2']))
       .map(sensor => html('option', {value: sensor.name}, sensor.name)));
-    return html('select', {}, html('option', {value: ''}, 'a sensor …'),
-      group('Grades', true), group('Devices', false));
+    return html('select', {}, group('Grades', true), group('Devices', false));
   }
 
   /* A control above the panels of a figure; none if none of them shows Allan deviations. */
@@ -139,9 +138,9 @@ const imukitOverlay = (() => {
       show();
     });
     remove.hidden = true;
-    select.addEventListener('change', () => {
+    /* By a button, because arrow keys in a list choose all that they pass. */
+    const choose = button('Add', 'Lay the sensor over the figure', () => {
       const sensor = catalogue.sensors.find(s => s.name === select.value);
-      select.value = '';
       if (sensor)
         add(layerOfSensor(catalogue, sensor));
     });
@@ -156,8 +155,8 @@ const imukitOverlay = (() => {
       input.value = '';
     });
     figure.querySelector('.panes').before(html('div', {class: 'over'},
-      html('label', {}, 'Lay over ', select),
-      button('a file …', 'Lay over a report or what --json printed', () => input.click()),
+      html('label', {}, 'Lay over ', select), choose,
+      button('A file …', 'Lay over a report or what --json printed', () => input.click()),
       input, remove, problem));
   }
 

@@ -40,7 +40,7 @@ const imukitPanel = (() => {
   /* Points of {x, y, lower, upper} from the numbers of a curve; null is a gap. */
   function pointsOf(curve) {
     const points = [], p = curve.points;
-    for (let i = 0; i < p.length; i += curve.width) {
+    for (let i = 0; i < p.length; i += Math.max(curve.width, 2)) {
       if (p[i] === null)
         points.push(null);
       else if (curve.width === 3)
@@ -73,12 +73,37 @@ const imukitPanel = (() => {
 
   const f = value => value.toFixed(1);
 
-  function linePath(spots) {
-    let path = '', begun = false;
+  /* The part of a segment within the frame; null: none. Dashes of a line that leaves a deep zoom
+   * by a million pixels would take minutes. */
+  function clip({left, right, top, bottom}, from, to) {
+    const dx = to.x - from.x, dy = to.y - from.y;
+    let begin = 0, end = 1;
+    for (const [step, room] of [[-dx, from.x - left], [dx, right - from.x], [-dy, from.y - top],
+      [dy, bottom - from.y]]) {
+      if (step === 0 && room < 0)
+        return null;
+      if (step < 0)
+        begin = Math.max(begin, room / step);
+      else if (step > 0)
+        end = Math.min(end, room / step);
+    }
+    const at = part => ({x: from.x + part * dx, y: from.y + part * dy});
+    return begin <= end ? [at(begin), at(end)] : null;
+  }
+
+  /* A point between two gaps is a dot. */
+  function linePath(spots, frame) {
+    let path = '', pen = '';
     spots.forEach((spot, i) => {
-      if (spot)
-        path += `${begun ? 'L' : 'M'}${f(spot.x)} ${f(spot.y)}${begun || spots[i + 1] ? '' : 'h0'}`;
-      begun = Boolean(spot);
+      const before = spots[i - 1], place = spot && `${f(spot.x)} ${f(spot.y)}`;
+      const part = spot && before && clip(frame, before, spot);
+      if (part) {
+        const [from, to] = part.map(end => `${f(end.x)} ${f(end.y)}`);
+        path += `${from === pen ? '' : `M${from}`}L${to}`;
+        pen = to;
+      } else if (spot && !before && !spots[i + 1] && clip(frame, spot, spot)) {
+        path += `M${place}h.1`;
+      }
     });
     return path;
   }
@@ -109,8 +134,8 @@ const imukitPanel = (() => {
     const spots = curve.points.map(point => spotOf(panel, curve, point));
     const make = isFilled(curve) ? bandPath : isLine(curve) ? linePath
       : curve.style === 'marks' ? markPath : dotPath;
-    const made = [svg('path', {class: `${curve.style} c${curve.color}`, d: make(spots)})];
-    if (!isFilled(curve) && !isLine(curve) && spots.some(spot => spot && spot.lower !== undefined))
+    const made = [svg('path', {class: `${curve.style} c${curve.color}`, d: make(spots, panel.frame)})];
+    if (curve.bars)
       made.unshift(svg('path', {class: `bars c${curve.color}`, d: barPath(spots)}));
     return made;
   }
@@ -260,5 +285,5 @@ const imukitPanel = (() => {
       ...regionNames(panel), svg('g', {class: 'pointed'}));
   }
 
-  return {draw, svg, pointsOf, spotOf, sample, isFilled};
+  return {draw, svg, pointsOf, spotOf, boxOf, sample, isFilled};
 })();

@@ -17,50 +17,42 @@ const imk_schematic *imk_schematic_of(const imk_instrument *instrument)
 
 /* ---- the sheet ------------------------------------------------------------------------------- */
 
-/* Colours that readers with colour blindness can tell apart, for light and dark sheets. Widths do
- * not grow where a part is stretched. */
+/* Classes begin with "s-", since a drawing may stand in a page with classes of its own. Colours
+ * that readers with colour blindness can tell apart, for light and dark sheets. Widths do not grow
+ * where a part is stretched. */
 static const char style[] =
     "<style>\n"
-    ".schematic path,.schematic circle,.schematic ellipse,.schematic rect{fill:none;"
-    "stroke:#1f2933;stroke-width:2;stroke-linejoin:round;fill-rule:evenodd}\n"
-    ".schematic .elastic *{vector-effect:non-scaling-stroke}\n"
-    ".schematic .paper{fill:#fff;stroke:none}\n"
-    ".schematic text{fill:#1f2933}.schematic .note{fill:#55616c}.schematic .small{font-size:15px}\n"
-    ".schematic .thin,.schematic .bar{stroke:#7b8794;stroke-width:1.2}\n"
-    ".schematic .axis{stroke:#7b8794;stroke-width:1.2;stroke-dasharray:14 4 3 4}\n"
-    ".schematic .hatch{stroke:#7b8794;stroke-width:1.5}.schematic .dot{fill:#7b8794;stroke:none}\n"
-    ".schematic .body{fill:#e3e7eb}.schematic .mass{fill:#b9d4ec}.schematic .glass{fill:#d7eef6}\n"
-    ".schematic .spring{stroke:#3d4b57;stroke-width:2}\n"
-    ".schematic .field{fill:#f7d9bd;stroke:#9a4a0a}\n"
-    ".schematic .one{stroke:#d55e00;stroke-width:3}.schematic .two{stroke:#0072b2;stroke-width:3}\n"
-    ".schematic .accent{stroke:#00805d;stroke-width:3}.schematic .wide{stroke-width:46}.schematic "
-    ".shaft{stroke-width:5}.schematic .rim{stroke:none}.schematic "
-    ".glowing{fill:#ffd23f;stroke:none}.schematic .rim-marks{stroke-width:40}.schematic "
-    ".ring{stroke-width:9}\n"
-    ".schematic .fill-one{fill:#d55e00;stroke:none}.schematic .fill-two{fill:#0072b2;stroke:none}\n"
-    ".schematic .fill-accent{fill:#00805d;stroke:none}\n"
-    ".schematic .head{stroke:none;fill:#1f2933}.schematic .head.one{fill:#d55e00}"
-    ".schematic .head.two{fill:#0072b2}.schematic .head.accent{fill:#00805d}\n"
-    "@media (prefers-color-scheme:dark){.schematic .glowing{fill:#a07800}\n"
-    ".schematic path,.schematic circle,.schematic ellipse,.schematic rect{stroke:#e4e9ee}\n"
-    ".schematic .paper{fill:#14191e;stroke:none}\n"
-    ".schematic text{fill:#e4e9ee}.schematic .note{fill:#a6b1bb}\n"
-    ".schematic .thin,.schematic .bar,.schematic .axis,.schematic .hatch{stroke:#8794a0}"
-    ".schematic .dot{fill:#8794a0;stroke:none}\n"
-    ".schematic .body{fill:#333d46}.schematic .mass{fill:#21507a}.schematic .glass{fill:#1d4552}\n"
-    ".schematic .spring{stroke:#b8c4ce}.schematic .field{fill:#5c3716;stroke:#f0a468}\n"
-    ".schematic .one{stroke:#ff9447}.schematic .two{stroke:#5db8f5}.schematic .accent{stroke:"
-    "#2fd0a0}\n"
-    ".schematic .fill-one{fill:#ff9447;stroke:none}.schematic .fill-two{fill:#5db8f5;stroke:none}"
-    ".schematic .fill-accent{fill:#2fd0a0;stroke:none}\n"
-    ".schematic .head{stroke:none;fill:#e4e9ee}.schematic .head.one{fill:#ff9447}"
-    ".schematic .head.two{fill:#5db8f5}.schematic .head.accent{fill:#2fd0a0}\n}\n";
+    ".schematic{fill:none;stroke:#1f2933;stroke-width:2;stroke-linejoin:round;fill-rule:evenodd}\n"
+    ".s-elastic *{vector-effect:non-scaling-stroke}.s-paper{fill:#fff;stroke:none}\n"
+    ".schematic text{fill:#1f2933;stroke:none}.schematic .s-note{fill:#55616c}\n"
+    ".s-small{font-size:15px}.s-thin,.s-bar{stroke:#7b8794;stroke-width:1.2}\n"
+    ".s-axis{stroke:#7b8794;stroke-width:1.2;stroke-dasharray:14 4 3 4}\n"
+    ".s-hatch{stroke:#7b8794;stroke-width:1.5}.s-dot{fill:#7b8794;stroke:none}\n"
+    ".s-body{fill:#e3e7eb}.s-mass{fill:#b9d4ec}.s-glass{fill:#d7eef6}\n"
+    ".s-spring{stroke:#3d4b57;stroke-width:2}.s-field{fill:#f7d9bd;stroke:#9a4a0a}\n"
+    ".s-one{stroke:#d55e00;stroke-width:3}.s-two{stroke:#0072b2;stroke-width:3}\n"
+    ".s-accent{stroke:#00805d;stroke-width:3}.s-wide{stroke-width:46}\n"
+    ".s-shaft{stroke-width:5}.s-rim{stroke:none}.s-glowing{fill:#ffd23f;stroke:none}\n"
+    ".s-rim-marks{stroke-width:40}.s-ring{stroke-width:9}.s-fill-one{fill:#d55e00;stroke:none}\n"
+    ".s-fill-two{fill:#0072b2;stroke:none}.s-fill-accent{fill:#00805d;stroke:none}\n"
+    ".s-head{stroke:none;fill:#1f2933}.s-head.s-one{fill:#d55e00}\n"
+    ".s-head.s-two{fill:#0072b2}.s-head.s-accent{fill:#00805d}\n"
+    "@media screen and (prefers-color-scheme:dark){.s-glowing{fill:#a07800}\n"
+    ".schematic{stroke:#e4e9ee}.s-paper{fill:#14191e;stroke:none}\n"
+    ".schematic text{fill:#e4e9ee}.schematic .s-note{fill:#a6b1bb}\n"
+    ".s-thin,.s-bar,.s-axis,.s-hatch{stroke:#8794a0}.s-dot{fill:#8794a0;stroke:none}\n"
+    ".s-body{fill:#333d46}.s-mass{fill:#21507a}.s-glass{fill:#1d4552}\n"
+    ".s-spring{stroke:#b8c4ce}.s-field{fill:#5c3716;stroke:#f0a468}.s-one{stroke:#ff9447}\n"
+    ".s-two{stroke:#5db8f5}.s-accent{stroke:#2fd0a0}.s-fill-one{fill:#ff9447;stroke:none}\n"
+    ".s-fill-two{fill:#5db8f5;stroke:none}.s-fill-accent{fill:#2fd0a0;stroke:none}\n"
+    ".s-head{stroke:none;fill:#e4e9ee}.s-head.s-one{fill:#ff9447}\n"
+    ".s-head.s-two{fill:#5db8f5}.s-head.s-accent{fill:#2fd0a0}\n"
+    "}\n";
 
-static const char which[] = ".schematic .still{display:none}\n"
-                            "@media (prefers-reduced-motion:reduce){.schematic .still{display:"
-                            "inline}.schematic .moving{display:none}}\n"
-                            "@media print{.schematic .still{display:inline}.schematic "
-                            ".moving{display:none}}\n";
+static const char which[] =
+    ".s-still{display:none}\n"
+    "@media (prefers-reduced-motion:reduce){.s-still{display:inline}.s-moving{display:none}}\n"
+    "@media print{.s-still{display:inline}.s-moving{display:none}}\n";
 
 static void put_drawing(imki_drawing *d)
 {
@@ -91,13 +83,13 @@ imk_status imki_schematic_sheet(const imk_schematic *schematic, const void *desi
     imki_text_put(&d->text, style);
     imki_text_put(&d->text, film ? which : "");
     imki_text_add(&d->text,
-                  "</style>\n<rect class=\"paper\" width=\"%d\" height=\"%d\" rx=\"8\"/>\n",
+                  "</style>\n<rect class=\"s-paper\" width=\"%d\" height=\"%d\" rx=\"8\"/>\n",
                   IMK_SCHEMATIC_WIDTH, IMK_SCHEMATIC_HEIGHT);
     imki_draw_title(d);
-    imki_text_put(&d->text, film ? "<g class=\"still\">\n" : "");
+    imki_text_put(&d->text, film ? "<g class=\"s-still\">\n" : "");
     put_drawing(d);
     if (film) {
-        imki_text_put(&d->text, "</g>\n<g class=\"moving\">\n");
+        imki_text_put(&d->text, "</g>\n<g class=\"s-moving\">\n");
         d->film = film;
         put_drawing(d);
         imki_text_put(&d->text, "</g>\n");

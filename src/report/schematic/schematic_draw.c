@@ -36,6 +36,17 @@ static void put_point(imki_drawing *d, char command, double x, double y)
     imki_put_tenths(&d->text, y);
 }
 
+/* `<path class="s-mass s-rim`, of the classes "mass rim". */
+static void put_shape(imki_drawing *d, const char *shape, const char *class)
+{
+    imki_text_add(&d->text, "<%s class=\"s-", shape);
+    for (const char *c = class; *c; c++) {
+        imki_text_put_char(&d->text, *c);
+        imki_text_put(&d->text, *c == ' ' ? "s-" : "");
+    }
+    imki_text_put_char(&d->text, '"');
+}
+
 /* ---- groups ---------------------------------------------------------------------------------- */
 
 void imki_dashes_begin(imki_drawing *d, double dash, double gap)
@@ -76,7 +87,8 @@ void imki_group_end(imki_drawing *d)
 
 void imki_draw_line(imki_drawing *d, const char *class, double x1, double y1, double x2, double y2)
 {
-    imki_text_add(&d->text, "<path class=\"%s\" d=\"", class);
+    put_shape(d, "path", class);
+    imki_text_put(&d->text, " d=\"");
     put_point(d, 'M', x1, y1);
     put_point(d, 'L', x2, y2);
     imki_text_put(&d->text, "\"/>\n");
@@ -84,7 +96,7 @@ void imki_draw_line(imki_drawing *d, const char *class, double x1, double y1, do
 
 void imki_draw_circle(imki_drawing *d, const char *class, double x, double y, double radius)
 {
-    imki_text_add(&d->text, "<circle class=\"%s\"", class);
+    put_shape(d, "circle", class);
     put_attribute(d, "cx", x);
     put_attribute(d, "cy", y);
     put_attribute(d, "r", radius);
@@ -93,7 +105,7 @@ void imki_draw_circle(imki_drawing *d, const char *class, double x, double y, do
 
 void imki_draw_ellipse(imki_drawing *d, const char *class, double x, double y, double rx, double ry)
 {
-    imki_text_add(&d->text, "<ellipse class=\"%s\"", class);
+    put_shape(d, "ellipse", class);
     put_attribute(d, "cx", x);
     put_attribute(d, "cy", y);
     put_attribute(d, "rx", rx);
@@ -104,7 +116,7 @@ void imki_draw_ellipse(imki_drawing *d, const char *class, double x, double y, d
 void imki_draw_box(imki_drawing *d, const char *class, double x, double y, double width,
                    double height, double corner)
 {
-    imki_text_add(&d->text, "<rect class=\"%s\"", class);
+    put_shape(d, "rect", class);
     put_attribute(d, "x", x);
     put_attribute(d, "y", y);
     put_attribute(d, "width", width);
@@ -116,13 +128,15 @@ void imki_draw_box(imki_drawing *d, const char *class, double x, double y, doubl
 
 void imki_draw_path(imki_drawing *d, const char *class, const char *data)
 {
-    imki_text_add(&d->text, "<path class=\"%s\" d=\"%s\"/>\n", class, data);
+    put_shape(d, "path", class);
+    imki_text_add(&d->text, " d=\"%s\"/>\n", data);
 }
 
 void imki_draw_polygon(imki_drawing *d, const char *class, size_t count, const double *points,
                        bool closed)
 {
-    imki_text_add(&d->text, "<path class=\"%s\" d=\"", class);
+    put_shape(d, "path", class);
+    imki_text_put(&d->text, " d=\"");
     for (size_t i = 0; i < count; i++)
         put_point(d, i == 0 ? 'M' : 'L', points[2 * i], points[2 * i + 1]);
     imki_text_put(&d->text, closed ? "Z\"/>\n" : "\"/>\n");
@@ -132,7 +146,7 @@ void imki_draw_head(imki_drawing *d, const char *class, double at_x, double at_y
                     double y)
 {
     const double length = 12, half = 4.5;
-    imki_text_add(&d->text, "<path class=\"head %s\" d=\"", class);
+    imki_text_add(&d->text, "<path class=\"s-head s-%s\" d=\"", class);
     put_point(d, 'M', at_x, at_y);
     put_point(d, 'L', at_x - length * x + half * y, at_y - length * y - half * x);
     put_point(d, 'L', at_x - length * x - half * y, at_y - length * y + half * x);
@@ -153,7 +167,8 @@ void imki_draw_turn(imki_drawing *d, const char *class, double x, double y, doub
     const double way = to > from ? 1 : -1;
     const double end = to - way * 9 / radius / degree; /* the head covers the rest */
     const bool large = fabs(end - from) > 180;
-    imki_text_add(&d->text, "<path class=\"%s\" d=\"", class);
+    put_shape(d, "path", class);
+    imki_text_put(&d->text, " d=\"");
     put_point(d, 'M', x + radius * imk_cos(from * degree), y + radius * imk_sin(from * degree));
     put_point(d, 'A', radius, radius);
     imki_text_add(&d->text, " 0 %d %d", large, way > 0);
@@ -170,7 +185,7 @@ void imki_draw_spring(imki_drawing *d, double x1, double y1, double x2, double y
 {
     const double length = sqrt((x2 - x1) * (x2 - x1) + (y2 - y1) * (y2 - y1));
     const double x = (x2 - x1) / length, y = (y2 - y1) / length, step = length / (4.0 * turns);
-    imki_text_put(&d->text, "<path class=\"spring\" d=\"");
+    imki_text_put(&d->text, "<path class=\"s-spring\" d=\"");
     put_point(d, 'M', x1, y1);
     for (int i = 0; i < 2 * turns; i++) {
         const double along = (2 * i + 1) * step, aside = i % 2 == 0 ? width : -width;
@@ -185,7 +200,7 @@ void imki_draw_anchor(imki_drawing *d, double x1, double y1, double x2, double y
     const double length = sqrt((x2 - x1) * (x2 - x1) + (y2 - y1) * (y2 - y1));
     const double x = (x2 - x1) / length, y = (y2 - y1) / length, distance = 8;
     const int count = (int)floor(length / distance);
-    imki_text_put(&d->text, "<path class=\"hatch\" d=\"");
+    imki_text_put(&d->text, "<path class=\"s-hatch\" d=\"");
     for (int i = 0; i <= count; i++) {
         const double along = (length - count * distance) / 2 + i * distance;
         put_point(d, 'M', x1 + along * x, y1 + along * y);

@@ -132,7 +132,7 @@ void imki_put_tenths(imki_text *out, double value);
 double imki_signal(const imk_instrument *instrument, const char *name,
                    const imk_schematic_moment *moment);
 /* The value of a part in the still drawing. */
-double imki_still_value(const imk_schematic *schematic, const void *design, size_t part);
+double imki_still_value(const imk_schematic *schematic, const void *design, size_t index);
 /* The largest of 1, 2, 3 and 5 times a power of ten that is not above a number > 0. */
 double imki_round_down(double value);
 

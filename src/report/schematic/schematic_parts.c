@@ -23,7 +23,7 @@ static void put_number(imki_text *out, const char *name, double value)
 /* ` translate(x y)` about which a part is stretched; before it with the sign -1. */
 static void put_translated(imki_drawing *d, const imk_schematic_part *p, int sign)
 {
-    imki_text_put(&d->text, sign > 0 ? "<g class=\"elastic\" transform=\"translate("
+    imki_text_put(&d->text, sign > 0 ? "<g class=\"s-elastic\" transform=\"translate("
                                      : "<g transform=\"translate(");
     imki_put_tenths(&d->text, sign * p->x);
     imki_text_put_char(&d->text, ' ');

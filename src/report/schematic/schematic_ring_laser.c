@@ -208,6 +208,36 @@ static void draw_fringes(imki_drawing *d)
     imki_draw_text(d, IMKI_START, 372, 326, "Δf = 4AΩ/λP");
 }
 
+static void draw_names(imki_drawing *d, const ring *r)
+{
+    const double detector = mirror + 6 + 36;
+    imki_draw_line(d, "thin", middle_x + detector * imk_cos(r->first) + 8,
+                   middle_y + detector * imk_sin(r->first), 372, 275);
+    imki_draw_turn(d, "line", middle_x, middle_y, 150, -62, -20);
+    imki_draw_text(d, IMKI_START, 290, 96, "Ω");
+    imki_draw_line(d, "one", 372, 66, 396, 66);
+    imki_draw_text(d, IMKI_START, 404, 73, "CW beam");
+    imki_draw_line(d, "two", 372, 94, 396, 94);
+    imki_draw_text(d, IMKI_START, 404, 101, "CCW beam");
+    const double last = r->first + 2 * r->half * (r->corners - 1);
+    imki_draw_label(d, IMKI_START, 12, 84, "mirror", 82, 80,
+                    middle_x + (mirror + 11) * imk_cos(last) - 12,
+                    middle_y + (mirror + 11) * imk_sin(last));
+    imki_draw_label(d, IMKI_START, 372, 186, "dither spring", 368, 180, middle_x + 26,
+                    middle_y - 14);
+    imki_draw_label(d, IMKI_START, 372, 146, "glass block", 368, 140, middle_x + 52, middle_y - 44);
+    imki_draw_label(d, IMKI_START, 292, 334, "prism", 304, 317,
+                    middle_x + (mirror + 22) * imk_cos(r->first),
+                    middle_y + (mirror + 22) * imk_sin(r->first));
+    const double second = r->first + 2 * r->half;
+    imki_draw_label(d, IMKI_START, 12, 362, "path length control", 44, 343,
+                    middle_x + (mirror + 26) * imk_cos(second),
+                    middle_y + (mirror + 26) * imk_sin(second));
+    imki_draw_label(d, IMKI_START, 236, 362, "cathode", 246, 348, middle_x + 8,
+                    middle_y + mirror * imk_cos(r->half) + wall + 7);
+    imki_magnified(d, BODY, IMKI_END, 530, 390, "dither");
+}
+
 static void draw(imki_drawing *d, const void *design)
 {
     const ring r = ring_of(design);
@@ -224,33 +254,7 @@ static void draw(imki_drawing *d, const void *design)
     imki_draw_circle(d, "line", middle_x, middle_y, 14);
     imki_draw_text(d, IMKI_MIDDLE, middle_x, 166, "A");
     draw_fringes(d);
-
-    const double detector = mirror + 6 + 36;
-    imki_draw_line(d, "thin", middle_x + detector * imk_cos(r.first) + 8,
-                   middle_y + detector * imk_sin(r.first), 372, 275);
-    imki_draw_turn(d, "line", middle_x, middle_y, 150, -62, -20);
-    imki_draw_text(d, IMKI_START, 290, 96, "Ω");
-    imki_draw_line(d, "one", 372, 66, 396, 66);
-    imki_draw_text(d, IMKI_START, 404, 73, "CW beam");
-    imki_draw_line(d, "two", 372, 94, 396, 94);
-    imki_draw_text(d, IMKI_START, 404, 101, "CCW beam");
-    const double last = r.first + 2 * r.half * (r.corners - 1);
-    imki_draw_label(d, IMKI_START, 12, 84, "mirror", 82, 80,
-                    middle_x + (mirror + 11) * imk_cos(last) - 12,
-                    middle_y + (mirror + 11) * imk_sin(last));
-    imki_draw_label(d, IMKI_START, 372, 186, "dither spring", 368, 180, middle_x + 26,
-                    middle_y - 14);
-    imki_draw_label(d, IMKI_START, 372, 146, "glass block", 368, 140, middle_x + 52, middle_y - 44);
-    imki_draw_label(d, IMKI_START, 292, 334, "prism", 304, 317,
-                    middle_x + (mirror + 22) * imk_cos(r.first),
-                    middle_y + (mirror + 22) * imk_sin(r.first));
-    const double second = r.first + 2 * r.half;
-    imki_draw_label(d, IMKI_START, 12, 362, "path length control", 44, 343,
-                    middle_x + (mirror + 26) * imk_cos(second),
-                    middle_y + (mirror + 26) * imk_sin(second));
-    imki_draw_label(d, IMKI_START, 236, 362, "cathode", 246, 348, middle_x + 8,
-                    middle_y + mirror * imk_cos(r.half) + wall + 7);
-    imki_magnified(d, BODY, IMKI_END, 530, 390, "dither");
+    draw_names(d, &r);
 }
 
 const imk_schematic imki_schematic_ring_laser = {

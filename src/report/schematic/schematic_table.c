@@ -72,7 +72,7 @@ double imki_still_value(const imk_schematic *schematic, const void *design, size
     const imk_schematic_part *leader = part->with ? part_of(schematic, part->with) : part;
     const double full = leader && leader->full ? leader->full(design) : 1;
     const double gain = imk_schematic_gain(schematic, design, index);
-    return part->base + (gain != 0 ? gain * leader->still * full : 0);
+    return part->base + (leader && gain != 0 ? gain * leader->still * full : 0);
 }
 
 imk_schematic_quantity imk_schematic_quantity_get(const imk_schematic *schematic, size_t index)

@@ -108,7 +108,7 @@ static const imk_schematic_slider sliders[] = {
     {"rate", -150, 150, "deg/s", false},       {"acceleration", -10, 10, "g", false},
     {"temperature", -40, 125, "degC", false},  {"drive.amplitude", 1, 8, "um", false},
     {"sense.split", 100, 3000, "Hz", true},    {"sense.q", 20, 1000, "1", true},
-    {"quadrature", -100, 100, "deg/s", false},
+    {"quadrature", -100, 100, "deg/s", false}, {"arrangement", 0, 0, NULL, false},
 };
 
 static double cycle(const void *design)
@@ -170,20 +170,24 @@ static void draw_axis(imki_drawing *d)
     imki_draw_text(d, IMKI_MIDDLE, 506, 222, "Ω");
 }
 
-static void draw(imki_drawing *d, const void *design)
+/* The springs between the case and the frames, at two heights. */
+static void draw_drive_springs(imki_drawing *d, double upper, double lower)
 {
-    const imk_tuning_fork *fork = design;
-    const bool in_plane = fork->arrangement == IMK_TUNING_FORK_IN_PLANE;
-    imki_draw_anchor(d, 30, 130, 30, 270);
-    imki_draw_anchor(d, 470, 270, 470, 130);
+    imki_draw_anchor(d, 30, upper - 30, 30, lower + 30);
+    imki_draw_anchor(d, 470, lower + 30, 470, upper - 30);
     imki_part_begin(d, SPRING_LEFT);
-    imki_draw_spring(d, 30, 160, 30 + OUTER, 160, 4, 7);
-    imki_draw_spring(d, 30, 240, 30 + OUTER, 240, 4, 7);
+    imki_draw_spring(d, 30, upper, 30 + OUTER, upper, 4, 7);
+    imki_draw_spring(d, 30, lower, 30 + OUTER, lower, 4, 7);
     imki_part_end(d);
     imki_part_begin(d, SPRING_RIGHT);
-    imki_draw_spring(d, 470, 160, 470 - OUTER, 160, 4, 7);
-    imki_draw_spring(d, 470, 240, 470 - OUTER, 240, 4, 7);
+    imki_draw_spring(d, 470, upper, 470 - OUTER, upper, 4, 7);
+    imki_draw_spring(d, 470, lower, 470 - OUTER, lower, 4, 7);
     imki_part_end(d);
+}
+
+static void draw_from_above(imki_drawing *d)
+{
+    draw_drive_springs(d, 160, 240);
     imki_part_begin(d, DRIVE);
     draw_frame(d, 70, 200, 27);
     draw_inside(d, 135, SENSE, UPPER_LEFT, LOWER_LEFT);
@@ -195,11 +199,47 @@ static void draw(imki_drawing *d, const void *design)
     draw_comb(d);
     draw_plates(d, 135);
     draw_plates(d, 365);
-
     imki_draw_label(d, IMKI_START, 20, 72, "proof mass", 80, 78, 108, 172);
     imki_draw_label(d, IMKI_MIDDLE, 250, 72, "drive comb", 250, 79, 250, 157);
     imki_draw_label(d, IMKI_END, 530, 72, "sense electrode", 400, 78, 367, 146);
     imki_draw_label(d, IMKI_START, 12, 312, "drive spring", 40, 294, 52, 247);
+}
+
+/* A mass between its springs, over the chip. */
+static void draw_slab(imki_drawing *d, double middle, size_t drive, size_t sense)
+{
+    imki_part_begin(d, drive);
+    imki_part_begin(d, sense);
+    imki_draw_box(d, "mass", middle - 65, 166, 130, 44, 2);
+    imki_draw_text(d, IMKI_MIDDLE, middle, 195, "m");
+    imki_part_end(d);
+    imki_part_end(d);
+}
+
+static void draw_from_the_side(imki_drawing *d)
+{
+    draw_drive_springs(d, 180, 196);
+    draw_slab(d, 135, DRIVE, SENSE);
+    draw_slab(d, 365, DRIVE_RIGHT, SENSE_RIGHT);
+    imki_draw_anchor(d, 470, 254, 30, 254);
+    imki_draw_box(d, "field", 238, 162, 24, 52, 2);
+    imki_draw_line(d, "line", 250, 214, 250, 254);
+    imki_draw_box(d, "fill-two", 85, 244, 100, 7, 1);
+    imki_draw_box(d, "fill-two", 315, 244, 100, 7, 1);
+    imki_draw_label(d, IMKI_START, 20, 112, "proof mass", 80, 118, 100, 176);
+    imki_draw_label(d, IMKI_MIDDLE, 250, 112, "drive comb", 250, 119, 250, 161);
+    imki_draw_label(d, IMKI_END, 530, 112, "sense electrode", 492, 118, 412, 245);
+    imki_draw_label(d, IMKI_START, 12, 312, "drive spring", 40, 294, 50, 203);
+    imki_draw_note(d, IMKI_END, 530, 26, "from the side");
+}
+
+static void draw(imki_drawing *d, const void *design)
+{
+    const imk_tuning_fork *fork = design;
+    if (fork->arrangement == IMK_TUNING_FORK_IN_PLANE)
+        draw_from_above(d);
+    else
+        draw_from_the_side(d);
     imki_draw_arrow(d, "one", 250, 318, 214, 318);
     imki_draw_arrow(d, "one", 250, 318, 286, 318);
     imki_draw_text(d, IMKI_MIDDLE, 250, 306, "drive x");
@@ -210,7 +250,6 @@ static void draw(imki_drawing *d, const void *design)
     imki_scale_bar(d, SENSE, 374, 330);
     draw_axis(d);
     imki_draw_text(d, IMKI_END, 530, 390, "F_c = 2kmΩẋ");
-    (void)in_plane;
 }
 
 const imk_schematic imki_schematic_tuning_fork = {

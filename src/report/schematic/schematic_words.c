@@ -48,7 +48,7 @@ static void put_words(imki_text *out, const char *text)
         if (!end || end == begin)
             return;
         const bool braces = *begin == '{';
-        imki_text_add(out, "<tspan class=\"small\" dy=\"%d\">", to - shift);
+        imki_text_add(out, "<tspan class=\"s-small\" dy=\"%d\">", to - shift);
         put_piece(out, begin + braces, end);
         imki_text_put(out, "</tspan>");
         c = end + braces;
@@ -76,7 +76,7 @@ void imki_draw_text(imki_drawing *d, imki_side side, double x, double y, const c
 
 void imki_draw_note(imki_drawing *d, imki_side side, double x, double y, const char *text)
 {
-    put_text(d, " class=\"note\"", side, x, y, text);
+    put_text(d, " class=\"s-note\"", side, x, y, text);
 }
 
 void imki_draw_label(imki_drawing *d, imki_side side, double x, double y, const char *text,
@@ -116,6 +116,35 @@ double imki_round_down(double value)
     return value;
 }
 
+/* The exponent of the power of ten that is not above a number > 0. */
+static int exponent_of(double value)
+{
+    int exponent = 0;
+    for (; value >= 10 && exponent < 400; exponent++)
+        value /= 10;
+    for (; value < 1 && exponent > -400; exponent--)
+        value *= 10;
+    return exponent;
+}
+
+/* A digit and a power of ten, "2·10^{15}". */
+static void power_text(double value, const char *unit, char *text, size_t size)
+{
+    int exponent = exponent_of(value);
+    double scaled = value;
+    for (int i = 0; i < exponent; i++)
+        scaled /= 10;
+    for (int i = 0; i > exponent; i--)
+        scaled *= 10;
+    long digit = lround(scaled);
+    exponent += digit == 10;
+    digit = digit == 10 ? 1 : digit;
+    if (digit == 1)
+        snprintf(text, size, "10^{%d}%s", exponent, unit);
+    else
+        snprintf(text, size, "%ld·10^{%d}%s", digit, exponent, unit);
+}
+
 /* "200 pm" of a round length [m]. */
 static void length_text(double length, char *text, size_t size)
 {
@@ -126,7 +155,11 @@ static void length_text(double length, char *text, size_t size)
         unit /= 1e3;
         i++;
     }
-    snprintf(text, size, "%ld %s", lround(length / unit), names[i]);
+    const double number = length / unit;
+    if (number >= 0.5 && number < 1e4)
+        snprintf(text, size, "%ld %s", lround(number), names[i]);
+    else
+        power_text(length, " m", text, size);
 }
 
 void imki_scale_bar(imki_drawing *d, size_t part, double x, double y)
@@ -152,11 +185,15 @@ void imki_scale_bar(imki_drawing *d, size_t part, double x, double y)
     }
 }
 
-/* "21 000" with two digits that count, in groups of three. */
+/* "21 000" with two digits that count, in groups of three; from a million on a power of ten. */
 static void large_text(double value, char *text, size_t size)
 {
     char digits[40];
     double round = 1;
+    if (!(value < 1e6)) {
+        power_text(value, "", text, size);
+        return;
+    }
     while (value / round >= 100)
         round *= 10;
     const int length = snprintf(digits, sizeof digits, "%.0f", floor(value / round + 0.5) * round);
@@ -203,5 +240,5 @@ void imki_draw_time(imki_drawing *d)
              : pace > 1.05 ? "time sped up %s ×"
                            : "true time",
              number);
-    imki_draw_note(d, IMKI_START, 10, 390, text);
+    put_text(d, " class=\"s-note pace\"", IMKI_START, 10, 390, text);
 }

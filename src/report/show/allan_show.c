@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The display of Allan deviations: data, tables, a figure. */
-#include "show_internal.h"
+#include "allan_show_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,9 +17,8 @@ imk_unit imk_allan_log_unit(const imk_allan_log *allan, size_t channel,
     return unit;
 }
 
-/* Unit a person reads the deviation in. */
-static imk_unit readable_unit(const imk_allan_log *a, size_t channel, imk_allan_statistic statistic,
-                              double magnitude)
+imk_unit imki_allan_readable_unit(const imk_allan_log *a, size_t channel,
+                                  imk_allan_statistic statistic, double magnitude)
 {
     if (a->settings.phase)
         return imk_allan_log_unit(a, channel, statistic);
@@ -72,7 +71,7 @@ static void show_table(const imk_allan_log *a, imk_channel_kind kind, size_t k, 
         return;
     const imk_allan_curve *first = curve[0];
     const imk_unit unit =
-        readable_unit(a, member[0], statistic, first->deviation[first->count / 2]);
+        imki_allan_readable_unit(a, member[0], statistic, first->deviation[first->count / 2]);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (a->settings.statistic_count > 1)
         imk_result_line(result, "%s (%s)", imk_allan_title(statistic), imk_allan_name(statistic));
@@ -157,7 +156,7 @@ static void judge_floors(const imk_allan_log *a, size_t k, size_t last, imki_rea
 }
 
 /* To which averaging time the first statistic can be read. */
-static void judge(const imk_allan_log *a, imk_result *result)
+imki_allan_judgement imki_allan_judge(const imk_allan_log *a, imk_result *result)
 {
     imki_reasons reasons = {.result = result};
     char use[80] = "";
@@ -187,9 +186,9 @@ static void judge(const imk_allan_log *a, imk_result *result)
     else
         imki_reason(&reasons, "each deviation is known to %.0f %% there",
                     100 * uncertainty_at(a, k, points - 1));
-    if (points > 0)
+    if (points > 2)
         judge_floors(a, k, points - 1, &reasons);
-    imki_judge(&reasons, usability, use);
+    return (imki_allan_judgement){usability, imki_judgement(&reasons, usability, use)};
 }
 
 /* ---- data ------------------------------------------------------------------------------------ */
@@ -224,21 +223,25 @@ static void show_statistics(const imk_allan_log_settings *s, imk_result *result)
     imk_result_text(result, "statistic", text);
 }
 
-static void show_data(const imk_allan_log *a, const char *name, imk_result *result)
+void imki_show_allan_record(const imk_allan_log *a, const char *name, imk_result *result)
 {
-    static const char *const biases[] = {"removed", "published", "left"};
-    const imk_allan_log_settings *s = &a->settings;
-    imk_result_object(result, "inputs");
     imk_result_text(result, "log", name);
     imk_result_count(result, "rows", (long long)a->record.rows);
     imk_result_quantity(result, "interval", a->record.dt, "s");
+}
+
+void imki_show_allan_settings(const imk_allan_log_settings *s, imk_result *result)
+{
+    static const char *const biases[] = {"removed", "published", "left"};
     show_statistics(s, result);
     imk_result_number(result, "confidence", s->confidence);
     imk_result_text(result, "edf", s->greenhall_riley ? "greenhall-riley" : "exact");
     imk_result_text(result, "bias", biases[s->bias]);
-    imk_result_end(result);
-    imk_result_object(result, "result");
-    judge(a, result);
+}
+
+void imki_show_allan_channels(const imk_allan_log *a, imk_result *result)
+{
+    const imk_allan_log_settings *s = &a->settings;
     imk_result_array(result, "channels");
     for (size_t c = 0; c < a->record.count; c++)
         for (size_t k = 0; k < s->statistic_count; k++) {
@@ -249,13 +252,25 @@ static void show_data(const imk_allan_log *a, const char *name, imk_result *resu
             imk_result_end(result);
         }
     imk_result_end(result);
+}
+
+static void show_data(const imk_allan_log *a, const char *name, imk_result *result)
+{
+    imk_result_object(result, "inputs");
+    imki_show_allan_record(a, name, result);
+    imki_show_allan_settings(&a->settings, result);
+    imk_result_end(result);
+    imk_result_object(result, "result");
+    const imki_allan_judgement judged = imki_allan_judge(a, result);
+    imk_result_judge(result, judged.usability, "%s", judged.text);
+    imki_show_allan_channels(a, result);
     imk_result_end(result);
 }
 
 /* ---- figure ---------------------------------------------------------------------------------- */
 
-static void show_curve(const imk_allan_curve *curve, const char *name, int color, double scale,
-                       imk_figure_builder *figure)
+void imki_show_allan_curve(const imk_allan_curve *curve, const char *name, int color, double scale,
+                           imk_figure_builder *figure)
 {
     const imk_curve band = {"",         IMK_CURVE_BAND,   color,        curve->count,
                             curve->tau, curve->deviation, curve->lower, curve->upper};
@@ -284,7 +299,8 @@ static void show_panel(const imk_allan_log *a, imk_channel_kind kind, bool time,
                 curve->count == 0)
                 continue;
             if (color == 0) {
-                unit = readable_unit(a, c, statistic, curve->deviation[curve->count / 2]);
+                unit =
+                    imki_allan_readable_unit(a, c, statistic, curve->deviation[curve->count / 2]);
                 const char *what = alone && statistic == IMK_ALLAN_OVERLAPPING ? "Allan deviation"
                                    : alone || time ? imk_allan_title(statistic)
                                                    : "deviation";
@@ -299,7 +315,7 @@ static void show_panel(const imk_allan_log *a, imk_channel_kind kind, bool time,
             }
             snprintf(text, sizeof text, "%.50s%s%s", column->name, alone ? "" : " ",
                      alone ? "" : imk_allan_name(statistic));
-            show_curve(curve, text, color++, unit.scale, figure);
+            imki_show_allan_curve(curve, text, color++, unit.scale, figure);
         }
 }
 

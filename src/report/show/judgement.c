@@ -77,14 +77,16 @@ static size_t count_alike(const imk_findings *findings, size_t first, bool befor
 
 void imki_reasons_of_warnings(imki_reasons *reasons, const imk_findings *findings)
 {
-    char text[900], more[40];
+    char text[900];
     for (size_t k = 0; k < findings->count; k++) {
         const imk_finding *f = &findings->item[k];
         if (f->level != IMK_FINDING_WARNING || count_alike(findings, k, true) > 0)
             continue;
         const size_t alike = count_alike(findings, k, false);
         imk_finding_text(f, text, sizeof text);
-        snprintf(more, sizeof more, alike > 0 ? " (and %zu more)" : "", alike);
+        char more[40] = "";
+        if (alike > 0)
+            snprintf(more, sizeof more, " (and %zu more)", alike);
         imki_reason(reasons, "%.*s%s", length_of_fact(text, f->name), text, more);
     }
 }

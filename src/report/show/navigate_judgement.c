@@ -49,7 +49,7 @@ static imk_usability judge_error(const imk_navigate_log *n, double predicted, im
                                                             : IMK_USABLE;
 }
 
-/* Of another track only what the model predicts is known. */
+/* Of another track only what the model predicts is known; most readings have to fit that. */
 static imk_usability judge_prediction(const imk_navigate_log *n, double predicted,
                                       imki_reasons *reasons)
 {
@@ -57,6 +57,11 @@ static imk_usability judge_prediction(const imk_navigate_log *n, double predicte
     for (size_t k = 0; k < n->aid_count; k++) {
         used += n->aid[k].counts.accepted;
         refused += n->aid[k].counts.refused;
+    }
+    if (refused > used) {
+        imki_reason(reasons, "most readings of aids do not fit, %zu of %zu", refused,
+                    used + refused);
+        return IMK_NOT_USABLE;
     }
     if (!n->settings.model) {
         imki_reason(reasons, "without a model or an aid nothing says how large the error is");
@@ -77,14 +82,13 @@ void imki_judge_navigation(const imk_navigate_log *n, imk_result *result)
     const bool lost =
         has_warning(&n->findings, "aid_lost") || has_warning(&n->findings, "updates_lost");
     const double predicted = hypot(at_end(n, IMK_TRACK_SIGMA), at_end(n, IMK_TRACK_SIGMA + 1));
-    imki_reasons_of_warnings(&reasons, &n->findings);
-    const bool doubts = reasons.told > 0;
     imk_usability usability = n->at_rest && !corrected ? judge_error(n, predicted, &reasons)
                                                        : judge_prediction(n, predicted, &reasons);
     if (lost)
         usability = IMK_NOT_USABLE;
-    else if (doubts && usability == IMK_USABLE)
+    else if (imki_warned(&n->findings) && usability == IMK_USABLE)
         usability = IMK_USABLE_WITH_CARE;
+    imki_reasons_of_warnings(&reasons, &n->findings);
     imk_readable_duration(n->record.dt * (double)(n->record.rows - n->first), elapsed,
                           sizeof elapsed);
     snprintf(use, sizeof use, " after %s", elapsed);

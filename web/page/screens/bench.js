@@ -7,7 +7,7 @@ screens.bench = {
   title: 'Bench',
   show(root) {
     root.classList.add('bench');
-    root.append(element('h1', {}, 'Bench'), element('p', {}, 'Four experiments about errors of inertial sensors. Every sample is simulated, and every result computed, by the verbs of the command, here on your machine.'));
+    root.append(element('h1', {}, 'Bench'), element('p', {}, 'Four experiments about errors of inertial sensors. Every sample is simulated, and every result computed, by the code of the command, here on your machine.'));
     const ends = [showTarget, showHeading, showGrades, showNoises].map((show) => {
       const section = element('section', {});
       root.append(section);

@@ -33,23 +33,26 @@ class CalibrateScreen {
     this.calibrated = new VerbView({ id: 'calibrate-result', own: true });
     this.options = new ReadingOptions({ id: 'calibrate-options', change: () => this.calibrate(), button: 'Calibrate again',
       more: [['gravity', 'Gravity, if known better than from the place', 'such as 9.80743m/s^2', ''], ['placement', 'Error of each placement, 1 sigma', 'such as 0.1deg', ''], ['turn-angle', 'Angle of each turn', 'such as 360deg', '']] });
-    this.choice = new FileChoice({ id: 'calibrate-files', label: 'Choose the log of the session', several: false, change: () => this.calibrate() });
+    this.choice = new FileChoice({ id: 'calibrate-files', label: 'Choose the log of the session', several: false, change: () => {
+      this.made = null;
+      this.calibrate();
+    } });
     this.poses = element('ol', { class: 'poses', id: 'calibrate-poses' });
     this.now = element('div', { class: 'pose-now', id: 'calibrate-now', hidden: true });
     root.append(element('h1', {}, 'Calibrate without equipment'),
       element('p', {}, 'Put the unit down, let it rest, turn it by hand to the next attitude, let it rest, and so on, while it is logged. Angles need not be exact: gravity is the reference. x, y and z are the axes of the log: +x is up where the x accelerometer reads +1 g.'),
       this.makeSettings(), this.plan.root, this.now, this.poses,
       element('h2', {}, 'The log of the session'), this.choice.root,
-      element('p', {}, 'No log at hand? ', element('button', { type: 'button', id: 'calibrate-example', onclick: () => this.example() }, 'Take an example: these poses, simulated')),
+      element('p', { class: 'no-print' }, 'No log at hand? ', element('button', { type: 'button', id: 'calibrate-example', onclick: () => this.example() }, 'Take an example: these poses, simulated')),
       this.options.root, this.calibrated.root);
     this.renew = settled(() => this.showPlan());
   }
 
   makeSettings() {
     const field = (label, control, help) => element('div', { class: 'field' }, element('label', { for: control.id }, label), control, help ? element('small', {}, help) : null);
-    this.procedure = element('select', { id: 'calibrate-procedure', onchange: () => this.renew() }, procedures.map(([name, text]) => element('option', { value: name }, `${name}: ${text}`)));
+    this.procedure = element('select', { id: 'calibrate-procedure', onchange: () => this.change() }, procedures.map(([name, text]) => element('option', { value: name }, `${name}: ${text}`)));
     this.unit = element('select', { id: 'calibrate-unit', onchange: () => this.renew() });
-    this.position = element('input', { type: 'text', id: 'calibrate-position', placeholder: '48.1 deg, 11.6 deg, 520 m', autocomplete: 'off', onchange: () => this.renew() });
+    this.position = element('input', { type: 'text', id: 'calibrate-position', placeholder: '48.1 deg, 11.6 deg, 520 m', autocomplete: 'off', onchange: () => this.change() });
     return element('div', { class: 'fields no-print' }, field('Procedure', this.procedure),
       field('The unit is like', this.unit, 'how well the poses will calibrate it follows from its noise'),
       field('Place: latitude, longitude, height', this.position, 'for gravity and the rotation of the Earth; without it 45° and sea level are taken'));
@@ -60,6 +63,16 @@ class CalibrateScreen {
     this.unit.replaceChildren(...(await sensorOptions()));
     this.unit.value = before;
     if (!this.steps) this.renew();
+  }
+
+  /** Another test or place: other poses, and another result of the same log, which an example's
+   *  session is not. */
+  change() {
+    if (this.made) this.choice.files = [];
+    this.made = null;
+    this.choice.show();
+    this.renew();
+    this.calibrate();
   }
 
   place() {
@@ -150,8 +163,9 @@ class CalibrateScreen {
     const words = ['simulate', ...sensors.words([this.unit.value]), '--motion', 'programme.yaml', '--rate', '100Hz', '--duration', `${this.duration.value}s`, '-o', 'session.csv'];
     const done = await this.calibrated.run(words, { files: [...sensors.files([this.unit.value]), ['programme.yaml', this.programme]] });
     if (!done) return;
-    this.made = [this.planWords(), words];
+    const made = [this.planWords(), words];
     this.choice.add([['session.csv', new Blob([fileOf(done, 'session.csv')])]]);
+    this.made = made;
   }
 
   async calibrate() {
@@ -168,7 +182,7 @@ class CalibrateScreen {
 
   showCalibrated(done, words, report, model) {
     const page = fileOf(done, report), bytes = fileOf(done, model);
-    const made = this.made && words[1] === 'session.csv' ? this.made : [];
+    const made = this.made || [];
     const offers = [['Model (YAML)', 'calibrated.yaml', bytes], ['Report (HTML)', 'report.html', page], ['Numbers (JSON)', 'calibrate.json', done.out]];
     const beside = [downloadButtons(offers.filter(([, , content]) => content)), this.makeRepeat(done.json.result)];
     if (bytes) {
@@ -186,9 +200,10 @@ class CalibrateScreen {
   makeRepeat({ poses }) {
     const wrong = (poses || []).filter(({ weight }) => weight < 0.5);
     if (wrong.length === 0) return element('p', { 'data-part': 'repeat' }, poses && poses.length > 0 ? 'No pose has to be repeated.' : '');
-    return element('section', { 'data-part': 'repeat' }, element('h2', {}, wrong.length === 1 ? 'Repeat this pose' : 'Repeat these poses'),
-      element('p', {}, 'They do not fit the others, so they were left out or count for less: the unit was touched, the table moved, or a sensor was at its limit. Log them again, together with all others.'),
+    const [title, they] = wrong.length === 1 ? ['Repeat this pose', 'It does not fit the others, so it was left out or counts'] : ['Repeat these poses', 'They do not fit the others, so they were left out or count'];
+    return element('section', { 'data-part': 'repeat' }, element('h3', {}, title),
+      element('p', {}, `${they} for less: the unit was touched, the table moved, or a sensor was at its limit. Log again, with all the other poses.`),
       element('ol', { class: 'poses' }, wrong.map(({ begin, force, distance }) => element('li', { class: 'wrong' }, drawPose(force),
-        `${poseWords(force)}, at ${begin.value.toFixed(1)} s: off by ${distance.toPrecision(2)} sigmas`))));
+        `${poseWords(force)}, at ${begin.value.toFixed(1)} s: off by ${Number(distance.toPrecision(2))} sigmas`))));
   }
 }

@@ -135,8 +135,8 @@ class DeviceScreen {
     const words = ['grade', ...sensors.words(names), '--report', 'grade.html'];
     const done = await this.graded.run([...words, '--json'], { files });
     if (turn !== this.turn) return;
-    if (done) this.graded.showReport(fileOf(done, 'grade.html'), { after: [terminalLine([words])], edit: (article) => this.arrange(article) });
-    else this.graded.result.replaceChildren();
+    if (!done) this.graded.result.replaceChildren();
+    else this.graded.showReport(fileOf(done, 'grade.html'), { after: [terminalLine([words])], edit: (article) => this.arrange(article) });
     this.showEntry();
   }
 
@@ -186,9 +186,14 @@ class DeviceScreen {
   }
 
   async showDrift() {
-    const words = this.driftWords();
+    const words = this.driftWords(), names = this.names().join();
     this.began = performance.now();
-    const done = await this.drift.run([...words, '--json'], { files: sensors.files(this.names()) });
-    if (done) this.drift.showReport(fileOf(done, 'drift.html'), { after: [terminalLine([words])] });
+    // What was drawn of another sensor would be read as this one's.
+    if (names !== this.drawn) this.drift.result.replaceChildren();
+    const begin = this.settings.aid ? 'Computing, about a second for each hour with updates …' : 'Computing …';
+    const done = await this.drift.run([...words, '--json'], { files: sensors.files(this.names()), begin });
+    if (!done) return;
+    this.drawn = names;
+    this.drift.showReport(fileOf(done, 'drift.html'), { after: [terminalLine([words])] });
   }
 }

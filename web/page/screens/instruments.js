@@ -75,6 +75,8 @@ class InstrumentView {
       this.first = answer.about;
       document.title = `${answer.about.title} · imukit`;
       layOutInstrument(this, answer);
+      for (const [what, text] of this.input) await askLive('expose', what, text); // as the terminal's line says
+      if (this.ended) return;
       this.status.textContent = '';
       this.play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
       if (!this.playing) this.advance(1 / 60);
@@ -155,7 +157,7 @@ class InstrumentView {
   /** Numbers as text, four times a second. */
   tell(moment) {
     this.clock.textContent = timeText(moment[0], this.about.pace);
-    if (this.row) for (const { column, now } of this.charts) now.textContent = shownNumber(this.row[1 + column()]);
+    if (this.row) for (const { column, now, unit } of this.charts) now.textContent = shownNumber(this.row[1 + column()]) + unit;
     this.values.forEach((cell, i) => {
       const text = shownNumber(moment[2 + this.parts.length + i]);
       if (cell.textContent !== text) cell.textContent = text;
@@ -198,7 +200,7 @@ class InstrumentView {
     this.about = answer.about;
     showSchematic(this, answer);
     showQuantities(this);
-    this.charts.forEach(({ chart }) => chart.add(this.screen, NaN, NaN));
+    this.charts.forEach(({ chart, sample }) => (chart.add(this.screen, NaN, NaN), sample(answer.about.rate)));
     this.showTerminal();
     if (!this.playing) this.advance(1 / 60);
   }

@@ -17,7 +17,10 @@ screens.log = {
 
 class LogScreen {
   constructor(root) {
-    this.choice = new FileChoice({ id: 'log-files', label: 'Choose a log', change: () => this.look() });
+    this.choice = new FileChoice({ id: 'log-files', label: 'Choose a log', change: () => {
+      this.made = null;
+      this.look();
+    } });
     this.options = new ReadingOptions({ id: 'log-options', change: () => this.look() });
     this.about = new VerbView({ id: 'log-info', own: true });
     this.identified = new VerbView({ id: 'log-identify', own: true });
@@ -27,7 +30,7 @@ class LogScreen {
     root.append(element('h1', {}, 'What is my sensor worth?'),
       element('p', {}, 'Record the sensor at rest, for an hour or more, and put the log here: text or CSV, .npy, .npz, PX4 ULog, ArduPilot .bin, ROS 1 bag, MCAP, UBX and others, also compressed. You get its noise with intervals, a verdict on the log, and a model to use elsewhere.'),
       this.choice.root,
-      element('p', {}, 'No log at hand? ', element('button', { type: 'button', id: 'log-example', onclick: () => this.example() }, 'Take an example: an hour of a tactical unit, simulated')),
+      element('p', { class: 'no-print' }, 'No log at hand? ', element('button', { type: 'button', id: 'log-example', onclick: () => this.example() }, 'Take an example: an hour of a tactical unit, simulated')),
       this.options.root, this.about.root, this.sort, this.go, this.identified.root);
   }
 
@@ -37,9 +40,9 @@ class LogScreen {
     this.about.clear();
     const done = await this.about.run(words);
     if (!done) return;
-    this.made = words;
     this.choice.files = [];
     this.choice.add([['example.csv', new Blob([fileOf(done, 'example.csv')])]]);
+    this.made = words;
   }
 
   /** What is in the logs, and what is missing; a log of a sensor at rest is identified at once. */
@@ -50,35 +53,37 @@ class LogScreen {
     this.about.clear();
     this.go.hidden = true;
     this.sort.replaceChildren();
-    let sound = files.length > 0;
-    for (const file of files) sound = (await this.lookAt(file, turn)) && sound;
-    if (turn !== this.turn || files.length === 0) return;
-    this.go.hidden = !sound;
-    if (files.length > 1 && sound) this.askSort();
-    else if (sound) this.identify();
+    const records = [];
+    for (const file of files) records.push(await this.lookAt(file, turn));
+    if (turn !== this.turn || files.length === 0 || records.includes(null)) return;
+    this.go.hidden = false;
+    if (files.length > 1) this.askSort();
+    else if (records[0].motion === 'at_rest') this.identify();
+    else this.about.result.append(element('p', {}, 'Noise is identified from a sensor at rest. A log of poses is for ', element('a', { href: '#calibrate' }, 'calibration'), '.'));
   }
 
-  /** @return whether the log can be identified */
+  /** @return the record of a log that can be identified; null if something is missing */
   async lookAt([name, content], turn) {
     const words = ['info', operand(name), ...this.options.words()];
     const done = await this.about.run([...words, '--json'], { files: [[name, content]], begin: `Reading ${name} …` });
-    if (turn !== this.turn) return false;
+    if (turn !== this.turn) return null;
     const error = done ? done.json.error : this.about.error;
+    if (error && error.code === 'unsupported') this.about.showProblem({ ...error, next: commandLine(['convert', operand(name), name.replace(/\.\w+$/, '') + '.npz']) });
     const result = done && done.json.result;
     this.options.mark(error);
     if (result) this.about.result.append(this.summary(name, done.json, words));
-    if (!result || error) return false;
+    if (!result || error) return null;
     if (result.topics.length > 0 && !this.options.value('topic')) {
       this.askTopic(result.topics);
-      return false;
+      return null;
     }
-    return true;
+    return result.record;
   }
 
   /** What is in a log, in the words of `info`. */
   summary(name, { inputs, result }, words) {
     const { usability, record } = result;
-    const made = this.made && name === 'example.csv' ? [this.made] : [];
+    const made = this.made ? [this.made] : [];
     return element('div', { class: 'summary' }, element('h2', {}, name),
       element('p', {}, `${inputs.format}. ${usability ? usability.sentence : ''}`),
       record ? this.columns(record) : null, terminalLine([...made, words]));

@@ -107,8 +107,7 @@ static double variance(const imk_drift_moments *m)
     return m->covariance[0][0] + m->covariance[1][1];
 }
 
-/* Of what the terms have by themselves: what correlations add or take is of no single one. */
-static double share_at(const imk_drift_analysis *a, size_t source, size_t t)
+double imki_drift_share_at(const imk_drift_analysis *a, size_t source, size_t t)
 {
     double total = variance(&a->total[t]);
     for (size_t k = 0; k < a->cross_count; k++)
@@ -124,7 +123,7 @@ static size_t rank_sources(const imk_drift_analysis *a, band *bands)
     for (size_t k = 0; k < a->source_count; k++) {
         double peak = 0;
         for (size_t t = 0; t < a->time_count; t++)
-            peak = fmax(peak, share_at(a, k, t));
+            peak = fmax(peak, imki_drift_share_at(a, k, t));
         if (peak >= visible)
             bands[count++] = (band){k, a->source[k].text, peak, 0};
     }
@@ -173,8 +172,9 @@ static void add_bands(const drawing *d, const imk_drift_case *one, const band *b
             break;
         imki_begin_curve(d->figure, of->label, IMK_CURVE_LAYER, of->color);
         for (size_t t = d->first; t < d->count; t++) {
-            const double above = b < count ? below[t] + 100 * share_at(one->analysis, of->source, t)
-                                           : below[t] + (100 - below[t]);
+            const double above =
+                b < count ? below[t] + 100 * imki_drift_share_at(one->analysis, of->source, t)
+                          : below[t] + (100 - below[t]);
             imk_figure_bar(d->figure, d->time[t], above, below[t], above);
             below[t] = above;
         }

@@ -35,24 +35,52 @@ static const char *time_text(const imk_drift_models *r, size_t row, char text[IM
     return imki_drift_moment(r, imki_drift_row_time(r, row), text);
 }
 
-/* "gyro bias repeatability makes 73 % of the variance after 1 h" */
-static void add_limit(const imk_drift_models *r, const imk_drift_case *one, imki_reasons *reasons)
+/* "gyro bias repeatability makes 55 % of the variance after 10 min" */
+static void add_share(const imk_drift_models *r, const char *source, double share, double time,
+                      imki_reasons *reasons)
 {
     char text[IMKI_DRIFT_TIME];
-    if (one && one->share_count > 0 && one->share[0].share > 0)
-        imki_reason(reasons, "%s makes %.0f %% of the variance after %s",
-                    one->analysis->source[one->share[0].source].text, 100 * one->share[0].share,
-                    imki_drift_moment(r, r->times->time[one->time], text));
+    if (share > 0)
+        imki_reason(reasons, "%s makes %.0f %% of the variance after %s", source, 100 * share,
+                    imki_drift_moment(r, time, text));
+}
+
+/* What makes the error where it becomes too large, or at the end: at a row of the table. */
+static void add_limit(const imk_drift_models *r, const imk_drift_case *one, size_t row,
+                      imki_reasons *reasons)
+{
+    const imk_drift_analysis *a = one ? one->analysis : NULL;
+    const size_t last = r->times->row_count - 1;
+    const size_t t = a ? r->times->row[row < last ? row : last] : 0;
+    size_t largest = 0;
+    if (!a || a->source_count == 0)
+        return;
+    for (size_t k = 1; k < a->source_count; k++)
+        if (imki_drift_share_at(a, k, t) > imki_drift_share_at(a, largest, t))
+            largest = k;
+    add_share(r, a->source[largest].text, imki_drift_share_at(a, largest, t), r->times->time[t],
+              reasons);
+}
+
+/* A message without the label of its case, where there is one model. */
+static const char *without_label(const imk_drift_models *r, const char *text)
+{
+    for (size_t c = 0; r->model_count == 1 && c < r->case_count; c++) {
+        const size_t length = strlen(r->cases[c].label);
+        if (strncmp(text, r->cases[c].label, length) == 0 && strncmp(text + length, ": ", 2) == 0)
+            return text + length + 2;
+    }
+    return text;
 }
 
 /* Doubts that are not about times at which there is no position any more. */
-static bool add_doubts(const imk_verdict *v, imki_reasons *reasons)
+static bool add_doubts(const imk_drift_models *r, const imk_verdict *v, imki_reasons *reasons)
 {
     const size_t told = reasons->told;
     for (size_t k = 0; k < v->count; k++)
         if (strcmp(v->message[k].code, "no_position") != 0 &&
             strcmp(v->message[k].code, "nonlinear") != 0)
-            imki_reason_of_message(reasons, v->message[k].text);
+            imki_reason_of_message(reasons, without_label(r, v->message[k].text));
     return reasons->told > told;
 }
 
@@ -64,7 +92,7 @@ static void judge_time(const imk_drift_models *r, const imk_drift_case *one, con
     char text[IMKI_DRIFT_TIME], cep[IMK_READABLE_SIZE], use[IMKI_DRIFT_TIME + 20] = "";
     const size_t rows = rows_within(r, one, usable_error), good = rows_within(r, one, good_error);
     const char *figure = one ? "CEP" : "CEP of the runs";
-    const bool doubts = add_doubts(v, reasons);
+    const bool doubts = add_doubts(r, v, reasons);
     if (rows == 0) {
         const double first = cep_at(r, one, 0);
         if (isfinite(first))
@@ -72,7 +100,7 @@ static void judge_time(const imk_drift_models *r, const imk_drift_case *one, con
                         imk_readable_figure(IMK_REQUIRED_CEP, first, cep), time_text(r, 0, text));
         else
             imki_reason(reasons, "there is none after %s already", time_text(r, 0, text));
-        add_limit(r, one, reasons);
+        add_limit(r, one, 0, reasons);
         imki_judge(reasons, IMK_NOT_USABLE, " for a position");
         return;
     }
@@ -84,7 +112,7 @@ static void judge_time(const imk_drift_models *r, const imk_drift_case *one, con
     else if (good == rows)
         imki_reason(reasons, "it is %s then",
                     imk_readable_figure(IMK_REQUIRED_CEP, cep_at(r, one, rows - 1), cep));
-    add_limit(r, one, reasons);
+    add_limit(r, one, rows, reasons);
     imki_judge(reasons, doubts ? IMK_USABLE_WITH_CARE : IMK_USABLE, use);
 }
 
@@ -104,7 +132,7 @@ static void judge_models(const imk_drift_models *r, const imk_verdict *v, imki_r
         else
             imki_reason(reasons, "%s not even for %s", one->label, time_text(r, 0, text));
     }
-    const bool doubts = add_doubts(v, &(imki_reasons){.result = reasons->result});
+    const bool doubts = add_doubts(r, v, &(imki_reasons){.result = reasons->result});
     imki_judge(reasons,
                !any     ? IMK_NOT_USABLE
                : doubts ? IMK_USABLE_WITH_CARE
@@ -127,8 +155,10 @@ static void judge_want(const imk_drift_models *r, const imk_verdict *v, imki_rea
     if (isfinite(present))
         imki_reason(reasons, "the figure is %s%s", one->missing_count > 0 ? "at least " : "",
                     imk_readable_quantity(present, &want->unit, now));
-    add_limit(r, one, reasons);
-    const bool doubts = add_doubts(v, reasons);
+    if (one->share_count > 0)
+        add_share(r, one->analysis->source[one->share[0].source].text, one->share[0].share,
+                  want->time, reasons);
+    const bool doubts = add_doubts(r, v, reasons);
     imki_judge(reasons, !met ? IMK_NOT_USABLE : doubts ? IMK_USABLE_WITH_CARE : IMK_USABLE, use);
 }
 

@@ -39,6 +39,9 @@ void imki_drift_show_runs(const imk_drift_models *r, imk_result *result);
 /* How the runs compare with the covariance. */
 void imki_drift_show_ratios(const imk_drift_models *r, imk_result *result);
 
+/* Share of a source in the horizontal variance at a time, of what the terms have by themselves:
+ * what correlations add or take is of no single one. */
+double imki_drift_share_at(const imk_drift_analysis *a, size_t source, size_t t);
 /* @param shares  with the shares of the terms beside it */
 void imki_drift_show_figure(const imk_drift_models *r, bool shares, imk_result *result);
 /* @param model  of the last case, its JSON as data called "model"; NULL: no values are told */

@@ -64,7 +64,7 @@ static void judge_one(const imk_graded *one, imki_reasons *reasons)
     snprintf(use, sizeof use, usability == IMK_NOT_USABLE ? " as any class" : " as %s%s class",
              t->at_best ? "at best " : "", class_name(t->overall));
     if (t->at_best && unstated.size > 0)
-        imki_reason(reasons, "%s is not stated", unstated.bytes);
+        imki_reason(reasons, "it does not state %s", unstated.bytes);
     else
         imki_reason(reasons, "the %s %s", t->limiting,
                     usability == IMK_NOT_USABLE ? "is too large for every class" : "decides");

@@ -82,7 +82,7 @@ static void add_model(const imk_graded *one, const char *name, int color, int ma
     if (!imki_grade_is_drawn(&p))
         return;
     snprintf(label, sizeof label, "%.60s", name);
-    imki_begin_curve(figure, label, line ? IMK_CURVE_DASHES : IMK_CURVE_MARKS, color % HUES);
+    imki_begin_curve(figure, label, line ? IMK_CURVE_DASHES : IMK_CURVE_MARKS, color);
     for (int i = 0; i < (line ? 2 : 1); i++)
         imk_figure_point(figure,
                          !isnan(p.at[0]) ? p.at[0]

@@ -258,3 +258,43 @@ void imki_identify_figure(const imk_identify_shown *shown, const char *points, i
     for (size_t c = 0; c < count; c++)
         show_deviations(shown, c, figure);
 }
+
+/* The deviations of one channel of all sensors, each with its model in one colour. */
+static void show_side_by_side(const imk_identify_several *several,
+                              const imk_identify_shown *records, size_t channel,
+                              imk_figure_builder *figure)
+{
+    const imk_log_column *column = imk_even_record_column(&several->log[0]->record, channel);
+    const imk_allan_curve *first = &several->log[0]->curve[channel];
+    const imk_unit unit = imk_channel_readable_unit(column, first->deviation[first->count / 2]);
+    char label[80];
+    snprintf(label, sizeof label, "Allan deviation [%s]", unit.text);
+    imk_figure_panel(figure, &(imk_panel){.title = column->name,
+                                          .x_label = "averaging time [s]",
+                                          .y_label = label,
+                                          .x_logarithmic = true,
+                                          .y_logarithmic = true,
+                                          .allan_deviation = true});
+    for (size_t r = 0; r < several->count; r++) {
+        const imk_allan_curve *curve = &several->log[r]->curve[channel];
+        const int color = (int)(r % 7); /* the last of the palette is a grey for bands */
+        imki_begin_curve(figure, "", IMK_CURVE_LINE, color);
+        show_model(several->log[r], channel, (component){-1, 0}, unit.scale, figure);
+        imk_figure_curve(figure,
+                         &(imk_curve){records[r].label, IMK_CURVE_POINTS, color, curve->count,
+                                      curve->tau, curve->deviation, curve->lower, curve->upper},
+                         unit.scale);
+    }
+}
+
+void imki_devices_figure(const imk_identify_several *several, const imk_identify_shown *records,
+                         const char *name, imk_result *result)
+{
+    const size_t count = several->joint.record.count;
+    imk_figure_builder *figure =
+        imk_result_figure(result, name, count < 3 ? count : 3,
+                          "Points: each log, with confidence intervals. Line of the same colour: "
+                          "its model.");
+    for (size_t c = 0; c < count; c++)
+        show_side_by_side(several, records, c, figure);
+}

@@ -68,5 +68,8 @@ void imki_truth_table(const imk_identify_shown *shown, imk_result *result);
 /* The Allan deviations of each channel; on the page with the misfit below each.
  * @param points  what the points are, for the caption */
 void imki_identify_figure(const imk_identify_shown *shown, const char *points, imk_result *result);
+/* Deviations and models of several sensors, a panel for each channel. @param name  of the figure */
+void imki_devices_figure(const imk_identify_several *several, const imk_identify_shown *records,
+                         const char *name, imk_result *result);
 
 #endif

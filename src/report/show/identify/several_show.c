@@ -369,6 +369,8 @@ void imk_show_identify_several(const imk_identify_several *s, const imk_identify
                                : s->runs ? "Run by run"
                                          : "Sensor by sensor");
     imk_result_for(result, IMK_FOR_BOTH);
+    if (!s->runs)
+        imki_devices_figure(s, records, joint->name, result);
     for (size_t c = 0; c < s->joint.record.count; c++)
         if (s->rates)
             rates_table(s, c, records, result);

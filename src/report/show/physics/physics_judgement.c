@@ -37,14 +37,14 @@ static void judge_run(const imk_physics_shown *p, imki_reasons *reasons)
     const imk_unit unit = imk_physics_output_unit(r, 0);
     imki_reasons_of_warnings(reasons, &r->findings);
     if (r->samples < 2)
-        imki_reason(reasons, "one sample does not show its scatter");
+        imki_reason(reasons, "one sample shows neither scatter nor whether the output settles");
     const imk_usability usability = is_off(&r->findings) ? IMK_NOT_USABLE
                                     : reasons->told > 0  ? IMK_USABLE_WITH_CARE
                                                          : IMK_USABLE;
     if (p->settings->input.frequency > 0 ||
         strcmp(p->settings->instrument->outputs[0].si, gyro ? "rad/s" : "m/s^2") != 0)
         imki_reason(reasons, "the run has %llu samples", (unsigned long long)r->samples);
-    else if (usability != IMK_NOT_USABLE)
+    else if (usability != IMK_NOT_USABLE && r->samples > 1)
         imki_reason(reasons, "the output follows the input of %.6g %s, with %.8g %s at the end",
                     input / unit.scale, unit.text, r->last[0] / unit.scale, unit.text);
     imki_judge(reasons, usability, usability == IMK_NOT_USABLE ? " at this input" : "");

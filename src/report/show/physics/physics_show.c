@@ -148,6 +148,7 @@ void imk_show_physics(const imk_physics_shown *p, imk_result *result)
     imk_result_for(result, IMK_FOR_PAGE);
     if (p->description && p->description[0])
         imk_result_line(result, "%s", p->description);
+    imki_show_schematic(p, result);
     if (!p->run)
         return;
     imk_result_heading(result, "Outputs against time");

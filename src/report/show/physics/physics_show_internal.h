@@ -16,6 +16,9 @@ void imki_design_data(const imk_physics_shown *p, imk_result *result);
 void imki_show_design(const imk_physics_shown *p, imk_result *result);
 void imki_show_overview(const imk_physics_shown *p, imk_result *result);
 
+/* physics_schematic_show.c: the schematic in motion; nothing of an instrument without one. */
+void imki_show_schematic(const imk_physics_shown *p, imk_result *result);
+
 /* physics_derived_show.c: what follows from the parts of the design. */
 void imki_show_derived(const imk_physics_shown *p, imk_result *result);
 void imki_derived_data(const imk_physics_shown *p, imk_result *result);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Runs gnuplot on a figure, in a private temporary folder (scratch_folder.c). It has a limited
- * time, and a signal that ends this process ends it too (io/leftovers.c). What it has drawn is
- * taken when it is whole only: gnuplot does not notice that the disk is full. */
+/* Runs the program that draws a figure, in a private temporary folder (scratch_folder.c). It has a
+ * limited time, and a signal that ends this process ends it too (io/leftovers.c). What it has drawn
+ * is taken when it is whole only: gnuplot does not notice that the disk is full. */
 #define _GNU_SOURCE /* posix_spawn_file_actions_addchdir_np() */
-#include "gnuplot_internal.h"
+#include "drawing_program_internal.h"
 
 #include "imukit/decimal.h"
 #include "imukit/figure_file.h"
@@ -29,14 +29,37 @@ static const double usual_limit = 120; /* [s] */
 
 /* ---- the program ----------------------------------------------------------------------------- */
 
-/* Path of gnuplot on PATH, absolute, for it is started in another folder. */
-static bool find_program(char program[PATH_MAX])
+/* A program, its package in Debian and its arguments: it works on files of the folder. */
+typedef struct tool {
+    const char *name, *package;
+    const char *argument[8];
+} tool;
+
+static const tool *tool_of(imki_terminal terminal)
+{
+    /* -d: the user's own start-up file must not change our figures. PNG has twice the size of the
+     * SVG: sharp on dense screens and in print. */
+    static const tool tools[] = {
+        [IMKI_TERMINAL_PNG] = {"rsvg-convert",
+                               "librsvg2-bin",
+                               {"--unlimited", "--format=png", "--zoom=2", "--output=figure.out",
+                                "figure.in"}},
+        [IMKI_TERMINAL_PDF] = {"rsvg-convert",
+                               "librsvg2-bin",
+                               {"--unlimited", "--format=pdf", "--output=figure.out", "figure.in"}},
+        [IMKI_TERMINAL_TEXT] = {"gnuplot", "gnuplot-nox", {"-d", "figure.in"}}};
+    return &tools[terminal];
+}
+
+/* Its path on PATH, absolute, for it is started in another folder. */
+static bool find_program(const tool *t, char program[PATH_MAX])
 {
     for (const char *path = getenv("PATH"); path && *path;) {
         const size_t length = strcspn(path, ":");
         char candidate[PATH_MAX];
         struct stat status;
-        const int needed = snprintf(candidate, sizeof candidate, "%.*s/gnuplot", (int)length, path);
+        const int needed =
+            snprintf(candidate, sizeof candidate, "%.*s/%s", (int)length, path, t->name);
         if (length > 0 && needed > 0 && needed < PATH_MAX && stat(candidate, &status) == 0 &&
             S_ISREG(status.st_mode) && access(candidate, X_OK) == 0 && realpath(candidate, program))
             return true;
@@ -45,24 +68,26 @@ static bool find_program(char program[PATH_MAX])
     return false;
 }
 
-bool imk_plot_available(void)
+bool imki_drawing_possible(imki_terminal terminal)
 {
     char program[PATH_MAX];
-    return find_program(program);
+    return find_program(tool_of(terminal), program);
 }
 
 /* Start the program in the folder, with its messages in a file, as the leader of a process group.
  * @return 0 or an errno value */
-static int start(const char *program, const char *folder, const sigset_t *mask, pid_t *child)
+static int start(const tool *t, const char *program, const char *folder, const sigset_t *mask,
+                 pid_t *child)
 {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
     sigset_t usual;
-    /* -d: the user's own start-up file must not change our figures. */
-    char name[] = "gnuplot", defaults[] = "-d";
-    char script[40];
-    snprintf(script, sizeof script, "%s", imki_scratch_names[IMKI_SCRATCH_SCRIPT]);
-    char *const arguments[] = {name, defaults, script, NULL};
+    char words[9][24], *arguments[10] = {words[0]};
+    snprintf(words[0], sizeof words[0], "%s", t->name);
+    for (int i = 0; t->argument[i]; i++) {
+        snprintf(words[i + 1], sizeof words[0], "%s", t->argument[i]);
+        arguments[i + 1] = words[i + 1];
+    }
     int number = posix_spawn_file_actions_init(&actions);
     if (number != 0)
         return number;
@@ -90,10 +115,10 @@ static int start(const char *program, const char *folder, const sigset_t *mask, 
     return number;
 }
 
-/* The time gnuplot has [s]. */
+/* The time it has [s]. */
 static double time_limit(void)
 {
-    const char *text = getenv("IMUKIT_GNUPLOT_SECONDS");
+    const char *text = getenv("IMUKIT_DRAWING_SECONDS");
     double limit = usual_limit;
     if (text && *text && *imk_decimal_parse(text, text + strlen(text), &limit) != '\0')
         limit = usual_limit;
@@ -124,23 +149,25 @@ static bool await(pid_t child, double limit, int *status)
 }
 
 /* What happened, and in its own words why. */
-static imk_status refuse(const imki_scratch *s, const char *found, imk_error *error)
+static imk_status refuse(const tool *t, const imki_scratch *s, const char *found, imk_error *error)
 {
-    char line[160], expected[sizeof line + 20];
+    char line[160], expected[sizeof line + 60];
     imki_scratch_last_line(s, IMKI_SCRATCH_SAID, line, sizeof line);
-    snprintf(expected, sizeof expected, "gnuplot printed: %s", line);
-    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", found,
-                         line[0] ? expected : "check that gnuplot works: gnuplot --version");
+    if (line[0])
+        snprintf(expected, sizeof expected, "%s printed: %s", t->name, line);
+    else
+        snprintf(expected, sizeof expected, "check that %s works: %s --version", t->name, t->name);
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", found, expected);
 }
 
-static imk_status run(const char *program, const imki_scratch *s, imk_error *error)
+static imk_status run(const tool *t, const char *program, const imki_scratch *s, imk_error *error)
 {
     sigset_t before;
     pid_t child = 0;
     int status = 0, slot = -1;
     const double limit = time_limit();
     imki_signals_hold(&before);
-    const int number = start(program, s->folder, &before, &child);
+    const int number = start(t, program, s->folder, &before, &child);
     if (number == 0)
         slot = imki_leftover_add_program(child);
     imki_signals_release(&before);
@@ -148,44 +175,50 @@ static imk_status run(const char *program, const imki_scratch *s, imk_error *err
         return imki_system_error(error, IMK_ERROR_OPEN, program, number);
     const bool in_time = await(child, limit, &status);
     imki_leftover_drop(slot);
-    char found[sizeof error->found];
+    char found[sizeof error->found], expected[sizeof error->expected];
     if (!in_time) {
-        snprintf(found, sizeof found, "gnuplot was stopped: it did not finish in %g s", limit);
-        return imk_error_set(
-            error, IMK_ERROR_UNSUPPORTED, "plot", found,
-            "check that gnuplot works, or give it more time: IMUKIT_GNUPLOT_SECONDS");
+        snprintf(found, sizeof found, "%s was stopped: it did not finish in %g s", t->name, limit);
+        snprintf(expected, sizeof expected,
+                 "check that %s works, or give it more time: IMUKIT_DRAWING_SECONDS", t->name);
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", found, expected);
     }
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
         return IMK_OK;
     if (WIFSIGNALED(status))
-        snprintf(found, sizeof found, "gnuplot was ended by signal %d (%s)", WTERMSIG(status),
+        snprintf(found, sizeof found, "%s was ended by signal %d (%s)", t->name, WTERMSIG(status),
                  strsignal(WTERMSIG(status)));
     else
-        snprintf(found, sizeof found, "gnuplot failed with exit code %d", WEXITSTATUS(status));
-    return refuse(s, found, error);
+        snprintf(found, sizeof found, "%s failed with exit code %d", t->name, WEXITSTATUS(status));
+    return refuse(t, s, found, error);
 }
 
 /* ---- from end to end ------------------------------------------------------------------------- */
 
+/* For gnuplot a script and numbers; for the other our SVG. */
 static imk_status save_figure(const imk_figure *figure, imki_drawing *drawing,
                               const imki_scratch *s, imk_error *error)
 {
+    const bool in_letters = drawing->terminal == IMKI_TERMINAL_TEXT;
+    char *input = NULL, *data = NULL;
+    size_t input_size = 0, data_size = 0;
+    imk_status status = IMK_OK;
     drawing->output = imki_scratch_names[IMKI_SCRATCH_OUTPUT];
     drawing->data = imki_scratch_names[IMKI_SCRATCH_DATA];
-    size_t script_size = 0, data_size = 0;
-    char *script = imki_figure_script(figure, drawing, &script_size);
-    char *data = imki_figure_data(figure, &data_size);
-    imk_status status = IMK_OK;
-    if (script && data) {
-        status = imki_scratch_save(s, IMKI_SCRATCH_SCRIPT, script, script_size, error);
-        if (status == IMK_OK)
-            status = imki_scratch_save(s, IMKI_SCRATCH_DATA, data, data_size, error);
-        if (status == IMK_OK)
-            status = imki_scratch_save(s, IMKI_SCRATCH_SAID, "", 0, error);
+    if (in_letters) {
+        input = imki_figure_script(figure, drawing, &input_size);
+        data = imki_figure_data(figure, &data_size);
+        if (!input || !data)
+            status = imk_error_set(error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
     } else {
-        status = imk_error_set(error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
+        status = imk_figure_svg(figure, &input, &input_size, error);
     }
-    free(script);
+    if (status == IMK_OK)
+        status = imki_scratch_save(s, IMKI_SCRATCH_INPUT, input, input_size, error);
+    if (status == IMK_OK && in_letters)
+        status = imki_scratch_save(s, IMKI_SCRATCH_DATA, data, data_size, error);
+    if (status == IMK_OK)
+        status = imki_scratch_save(s, IMKI_SCRATCH_SAID, "", 0, error);
+    free(input);
     free(data);
     return status;
 }
@@ -214,7 +247,7 @@ static bool is_whole(const imk_figure *figure, const imki_drawing *drawing, cons
     return false;
 }
 
-/* The drawing that gnuplot has left. */
+/* The drawing that the program has left. */
 static imk_status take_image(const imk_figure *figure, const imki_drawing *drawing,
                              const imki_scratch *s, char **image, size_t *size, imk_error *error)
 {
@@ -224,31 +257,43 @@ static imk_status take_image(const imk_figure *figure, const imki_drawing *drawi
     if (number == ENOMEM)
         return imk_error_set(error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
     if (number != 0 || !is_whole(figure, drawing, drawn, length)) {
+        const tool *t = tool_of(drawing->terminal);
+        char found[sizeof error->found];
+        snprintf(found, sizeof found, "%s failed: %s", t->name,
+                 number != 0 ? "there is no drawing" : "the end of its drawing is missing");
         free(drawn);
-        return refuse(s,
-                      number != 0 ? "gnuplot failed: there is no drawing"
-                                  : "gnuplot failed: the end of its drawing is missing",
-                      error);
+        return refuse(t, s, found, error);
     }
     *image = drawn;
     *size = length;
     return IMK_OK;
 }
 
-imk_status imki_gnuplot_draw(const imk_figure *figure, imki_drawing *drawing, char **image,
+/* What to install, and what needs nothing. */
+static imk_status refuse_missing(const tool *t, imki_terminal terminal, imk_error *error)
+{
+    char found[sizeof error->found], expected[sizeof error->expected];
+    snprintf(found, sizeof found, "%s is not installed", t->name);
+    snprintf(expected, sizeof expected, "install it: apt install %s%s", t->package,
+             terminal == IMKI_TERMINAL_TEXT ? ""
+                                            : "; a file ending in .svg needs no other program");
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", found, expected);
+}
+
+imk_status imki_drawing_make(const imk_figure *figure, imki_drawing *drawing, char **image,
                              size_t *size, imk_error *error)
 {
     imki_scratch s;
     char program[PATH_MAX];
-    if (!find_program(program))
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", "gnuplot is not installed",
-                             "install it: apt install gnuplot-nox");
+    const tool *t = tool_of(drawing->terminal);
+    if (!find_program(t, program))
+        return refuse_missing(t, drawing->terminal, error);
     imk_status status = imki_scratch_make(&s, error);
     if (status != IMK_OK)
         return status;
     status = save_figure(figure, drawing, &s, error);
     if (status == IMK_OK) {
-        status = run(program, &s, error);
+        status = run(t, program, &s, error);
         if (status == IMK_OK)
             status = take_image(figure, drawing, &s, image, size, error);
         if (status == IMK_ERROR_UNSUPPORTED && imki_scratch_is_full(&s))
