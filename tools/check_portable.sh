@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # libimukit and libimukit-physics compile unchanged, without a warning, for a Cortex-M4F and for
 # WebAssembly. On the Cortex their objects hold no writable data, and link with newlib and libm alone.
-# So do the jobs and the renderers of results for WebAssembly. What no program here needs is only read
-# by its compiler.
+# So do the jobs and the renderers of results for WebAssembly, as far as a program here needs them;
+# tools/check web compiles the rest.
 # WebAssembly is run by Node: the examples that need nothing else, and the two programs that hash
 # what must be the same bits everywhere, say there what they say here. The stack is what wasm-ld makes
 # it, 64 KiB; it stands below the data, so that to overflow it is to stop.
@@ -32,12 +32,10 @@ programs="$programs tests/identity/simulate_hash.c tests/identity/physics_hash.c
 for source in $programs; do
     gcc -std=c17 -O2 -Iinclude -ffp-contract=off -c "$source" -o "$out/$(basename "$source" .c).o"
 done
-# Both clang and gcc see each file, so what only one of them warns about is found.
 files=$(tools/core_files.sh; find src/jobs src/report -name '*.c')
 needed="/($(tools/needed_files.sh "$out"/*.o | paste -sd'|'))$"
 clang="clang --target=wasm32-wasi"
 tools/compile_core.sh "$out/wasm32" "$(grep -E "$needed" <<<"$files")" $clang -O2
-tools/compile_core.sh "$out/wasm32-read" "$(grep -vE "$needed" <<<"$files")" $clang -fsyntax-only
 
 run=0
 for source in $programs; do

@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <sys/types.h>
 
 /* The verbs of a page. */
 #define COMMAND_VERBS(VERB)                                                                        \
@@ -39,5 +40,9 @@ struct winsize {
     unsigned short ws_row, ws_col;
 };
 #define TIOCGWINSZ 0x5413
+
+/* core/absent.c defines them. */
+char *realpath(const char *path, char *resolved);
+int fchmod(int file, mode_t mode);
 
 #endif
