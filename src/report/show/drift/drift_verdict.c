@@ -39,7 +39,9 @@ static void warn_of_omitted(const imk_drift_case *one, imk_verdict *v)
     imki_text list = {.bytes = NULL};
     for (size_t i = 0; i < one->analysis->omitted_count; i++)
         imki_text_add(&list, "%s%s", i > 0 ? ", " : "", one->analysis->omitted[i]);
-    if (list.size > 0)
+    if (list.failed)
+        v->result->arena.failed = true;
+    else if (list.size > 0)
         warn(v, "omitted",
              "%s: the linear theory leaves out %.239s; --monte-carlo includes everything that "
              "needs no temperature",
@@ -52,7 +54,9 @@ static void warn_of_missing(const imk_drift_case *one, imk_verdict *v)
 {
     imki_text list = {.bytes = NULL};
     imki_missing_names(one->missing_count, one->missing, &list);
-    if (list.size > 0)
+    if (list.failed)
+        v->result->arena.failed = true;
+    else if (list.size > 0)
         warn(v, "lower_bound",
              "%s: the figures are lower bounds, because the model does not state %.500s; state "
              "them, 0 where they are 0, or assume what is typical with --assume-class own",
