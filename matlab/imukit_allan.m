@@ -3,16 +3,21 @@ function result = imukit_allan (varargin)
 %
 %   R = imukit_allan (FILE, NAME, VALUE, ...)
 %   R = imukit_allan (X, RATE, 'columns', NAMES, NAME, VALUE, ...)
+%   R = imukit_allan ({FILE, FILE, ...}, NAME, VALUE, ...)
+%   R = imukit_allan ({X, X, ...}, RATE, 'columns', NAMES, NAME, VALUE, ...)
 %
 % FILE is a log as the command "imukit allan" reads it. X is a real matrix of class double with a
 % row for each sample and a column for each channel, RATE the sampling rate [Hz], or [] where a
 % column is the time. NAMES say what the columns are: 'gyro_x', 'accel_z', 'time', 'temperature',
 % or 'gyro' and 'accel' for three each. Units are SI, or in brackets: 'gyro [deg/s]'. '-' skips a
-% column. NaN stands for a missing sample.
+% column. NaN stands for a missing sample. RATE and NAMES hold for all matrices, of which there are
+% up to 8, as of files.
 %
 % R is what jsondecode makes of "imukit allan --json" (docs/json.md), but for the points, which are
 % columns: R.result.channels(k) has name, statistic and points with the columns tau, deviation,
-% lower, upper, edf, count, noise and used, and the units of the first four in units. Warnings in R.findings are given as warnings, too, with the identifier imukit:CODE.
+% lower, upper, edf, count, noise and used, and the units of the first four in units. Of several
+% logs it is R.result.logs(l).channels(k). Warnings in R.findings are given as warnings, too, with
+% the identifier imukit:CODE.
 %
 % Options are those of the command, with _ for -. Numbers are in SI units; a text states its unit:
 %   'statistic'   'oadev' (default), 'adev', 'mdev', 'hdev' ..., or a cell array of them

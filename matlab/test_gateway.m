@@ -172,6 +172,14 @@ function test_sessions ()
   from_files = imukit_identify (files, 'runs', true);
   assert (from_arrays.inputs.logs, {'array-1.npy'; 'array-2.npy'; 'array-3.npy'});
   assert (numbers_of (from_arrays.result.channels), numbers_of (from_files.result.channels));
+  from_arrays = imukit_allan (data, [], 'columns', columns);
+  same_as_command (imukit_allan (files), 'allan --json run1.csv run2.csv run3.csv');
+  assert (from_arrays.inputs.logs, {'array-1.npy'; 'array-2.npy'; 'array-3.npy'});
+  assert (strncmp (from_arrays.result.usability.sentence, 'array-', 6));
+  for k = 1:3
+    one = imukit_allan (files{k});
+    assert (numbers_of (from_arrays.result.logs(k).channels), numbers_of (one.result.channels));
+  end
   option = {'procedure', 'repeatability'};
   from_arrays = imukit_calibrate (data, [], 'columns', columns, option{:});
   from_files = imukit_calibrate (files, option{:});
@@ -336,7 +344,8 @@ function test_refusals ()
   refused ('expected a log', u, 'allan', '');
   refused ('expected a log', u, 'allan', struct ('a', 1), 100, gyro{:});
   refused ('this is struct', u, 'allan', struct ('a', 1));
-  refused ('takes up to 1', u, 'allan', {x, x}, 100, gyro{:});
+  refused ('has 9 matrices: imukit_allan takes up to 8', u, 'allan', repmat ({x}, 1, 9), 100, gyro{:});
+  refused ('one word too many', u, 'allan', repmat ({'log.csv'}, 1, 9));
   refused ('element 2 of the cell array is no matrix', u, 'identify', {x, 'a'}, 100, gyro{:});
   refused ('element 2 of the cell array is a matrix', u, 'identify', {'log.csv', x}, 100, gyro{:});
   refused ('the readings are empty', u, 'identify', {x, []}, 100, gyro{:});

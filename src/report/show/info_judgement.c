@@ -168,8 +168,8 @@ static void judge_poses(const imk_info_log *info, imk_info_next next, imki_reaso
     imki_reason(reasons, "the sensor rests in %zu attitudes%s", info->attitudes,
                 info->whole ? "" : " or more; only places in the log were read");
     imki_judge(reasons, doubts || !info->whole ? IMK_USABLE_WITH_CARE : IMK_USABLE,
-               next == IMK_INFO_NEXT_SIXPOSITION ? " for calibrate --procedure sixposition"
-                                                 : " for calibrate --procedure multiposition");
+               next == IMK_INFO_NEXT_SIXPOSITION ? " for a sixposition calibration"
+                                                 : " for a multiposition calibration");
 }
 
 /* A log in motion is no test, but six axes can be navigated. */
@@ -191,8 +191,7 @@ void imki_judge_info(const imk_info_log *info, const imk_info_file *file, imk_re
 {
     imki_reasons reasons = {.result = result};
     if (!info) {
-        imki_reason(&reasons, "of the %zu sensors in it, one has to be chosen by --topic",
-                    file->stream_count);
+        imki_reason(&reasons, "of the %zu sensors in it, one has to be chosen", file->stream_count);
         imki_judge(&reasons, IMK_NOT_USABLE, " yet");
         return;
     }

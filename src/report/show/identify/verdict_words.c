@@ -82,7 +82,7 @@ static const struct words {
     {"stamps:alternate", "long and short steps of the time alternate", NULL},
     {"stamps:held", "rows repeat the samples of a slower sensor", NULL},
     {"stamps:sparse", "a slower sensor has no values in other rows", NULL},
-    {"stamps:rate_differs", "--rate is not the rate of the time column", NULL},
+    {"stamps:rate_differs", "the rate stated is not that of the time column", NULL},
     {"uneven_increments", "increments are divided by steps of the time that are not even", NULL},
     {"unused_axis", "an axis is missing, and a column that looks like it is not used", NULL},
     {"unused_sensor", "a sensor that seems to be in the log is not read", NULL},

@@ -98,7 +98,7 @@ static void judge_design(const imk_physics_shown *p, imki_reasons *reasons)
     if (t->dead_band.value[0] > 0)
         imki_reason(reasons, "inputs below %.3g %s read 0", t->dead_band.value[0] / small.scale,
                     small.text);
-    imki_reason(reasons, "by closed forms, which --sweep compares with experiments");
+    imki_reason(reasons, "by closed forms, which experiments can check");
     imki_judge(reasons, t->dead_band.value[0] > 0 ? IMK_USABLE_WITH_CARE : IMK_USABLE, use);
 }
 
