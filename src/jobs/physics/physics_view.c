@@ -102,7 +102,7 @@ static imk_status record(const imk_physics_log_settings *settings, const imk_phy
     for (uint64_t k = 0; k < v->points * stride; k++) {
         const imk_exposure e = imk_physics_input_at(&input, view->rate, settle + k);
         instrument->step(state, &e, outputs);
-        if ((k + 1) % stride != 0 && !keeps_extremes(view, stride))
+        if (stride > 1 && (k + 1) % stride != 0 && !keeps_extremes(view, stride))
             continue;
         instrument->observe(state, inside);
         for (int c = -1; c < view->curve_count; c++) {

@@ -71,7 +71,7 @@ bool imki_warned(const imk_findings *findings);
 /* The warnings, as findings of the page. */
 void imki_show_warnings(const imk_findings *findings, imk_result *result);
 /* evaluate_judgement.c: in the object of the data that is open. */
-void imki_judge_evaluation(const imk_evaluate_shown *shown, imk_result *result);
+void imki_judge_evaluation(const imk_evaluate_shown *v, imk_result *result);
 /* evaluate_figure_show.c: deviations and hysteresis of a channel. */
 void imki_show_evaluate_panels(const imk_evaluate_channel *channel, imk_figure_builder *figure);
 
