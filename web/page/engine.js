@@ -4,10 +4,13 @@
 
 'use strict';
 
-/** The module, unpacked and compiled once, for all workers. */
+/** The module, unpacked and compiled once, for all workers; again if that failed. */
 const compiledModule = (() => {
   let module;
-  return () => (module ||= unpackModule());
+  return () => (module ||= unpackModule().catch((reason) => {
+    module = null;
+    throw reason;
+  }));
 })();
 
 class Engine {
@@ -24,7 +27,7 @@ class Engine {
   async begin() {
     const worker = (this.worker = new Worker(workerAddress()));
     worker.onmessage = ({ data }) => this.answer(data);
-    worker.onerror = (event) => this.fail(event.message || 'the worker has stopped');
+    whenStopped(worker, (reason) => worker === this.worker && this.fail(reason));
     worker.postMessage({ module: await compiledModule() });
     return worker;
   }
@@ -53,8 +56,8 @@ class Engine {
       return;
     }
     this.waiting.delete(id);
-    if (failed && asked.isVerb) this.failVerb(asked, kind, failed);
-    else if (failed) asked.reject(new Error(failed));
+    if (failed !== undefined && asked.isVerb) this.failVerb(asked, kind, failed);
+    else if (failed !== undefined) asked.reject(new Error(failed));
     else asked.resolve(result);
   }
 
@@ -81,6 +84,13 @@ class Engine {
   }
 }
 
+/** Call `act` with the Error of a worker that throws outside a request, cannot be begun, or sends
+ *  what cannot be received. */
+function whenStopped(worker, act) {
+  worker.onerror = ({ message }) => act(new Error(message || 'the worker has stopped'));
+  worker.onmessageerror = () => act(new Error('an answer of the worker cannot be received'));
+}
+
 class Cancelled extends Error {
   constructor() {
     super('cancelled');
@@ -92,7 +102,7 @@ function unpackModule() {
   const worker = new Worker(workerAddress());
   const answer = new Promise((resolve, reject) => {
     worker.onmessage = ({ data }) => (data.module ? resolve(data.module) : reject(new Error(data.failed)));
-    worker.onerror = (event) => reject(new Error(event.message || 'the worker has stopped'));
+    whenStopped(worker, reject);
   });
   worker.postMessage({ packed: document.getElementById('module').textContent });
   return answer.finally(() => worker.terminate());

@@ -3,6 +3,13 @@
 
 'use strict';
 
+/** Is it the companion of one of these files? LOG.npy.columns names the columns of LOG.npy. */
+const isCompanion = (name, files) => files.some(([other]) => name === other + '.columns');
+
+/** Is it the same file of the disk, chosen again? Texts and what is made here are no files. */
+const isSameFile = (one, other) => one instanceof File && other instanceof File && one.name === other.name &&
+  one.size === other.size && one.lastModified === other.lastModified;
+
 class FileChoice {
   /** change: is called when files have come or gone. paste: whether a text can be pasted. */
   constructor({ id, label, change, paste = true, several = true }) {
@@ -60,14 +67,25 @@ class FileChoice {
     this.note.textContent = text;
   }
 
+  /** The files but for companions, which only go along with what is read. */
+  logs() {
+    return this.files.filter(([name]) => !isCompanion(name, this.files));
+  }
+
+  /** Keep the last file, with its companion, and the newer of two of one name. */
+  keepLast(files) {
+    const all = [...this.files.filter(([name]) => !files.some(([other]) => other === name)), ...files];
+    const [last] = all.filter(([name]) => !isCompanion(name, all)).at(-1);
+    this.files = [];
+    return all.filter(([name]) => name === last || isCompanion(name, [[last]]));
+  }
+
   /** files: [[name, File or Blob], …]. Without `several` the last one counts. */
   add(files) {
     if (files.length === 0) return;
     this.say('');
-    if (!this.several) {
-      this.files = [];
-      files = files.slice(-1);
-    }
+    if (!this.several) files = this.keepLast(files);
+    this.files = this.files.filter(([, kept]) => !files.some(([, content]) => isSameFile(kept, content)));
     const taken = new Set(this.files.map(([name]) => name));
     for (const [name, content] of files) {
       const free = freeName(name, taken);

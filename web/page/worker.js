@@ -34,6 +34,14 @@ async function doVerb({ id, words, files, environment }) {
     made.map(([, bytes]) => bytes.buffer));
 }
 
+// A fault outside an answer, and a request that cannot be received, end in `onerror` of the page.
+onmessageerror = () => {
+  throw new Error('a request cannot be received');
+};
+onunhandledrejection = ({ reason }) => setTimeout(() => {
+  throw reason;
+});
+
 onmessage = async ({ data }) => {
   try {
     if (data.packed) postMessage({ module: await WebAssembly.compile(unpackLzma(bytesOf(data.packed))) });

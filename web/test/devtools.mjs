@@ -22,7 +22,7 @@ export class Browser {
       '--remote-debugging-pipe', `--user-data-dir=${browser.folder}/profile`, 'about:blank'];
     browser.process = spawn(process.env.CHROMIUM || 'chromium', flags,
       { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'], env: { ...process.env, HOME: browser.folder } });
-    browser.ended = new Promise((resolve) => browser.process.on('close', resolve));
+    browser.ended = new Promise((resolve) => browser.process.on('exit', resolve));
     browser.process.on('error', (reason) => browser.stop(reason));
     browser.ended.then(() => browser.stop(new Error('Chromium has ended')));
     browser.process.stdio[3].on('error', () => {});
@@ -92,7 +92,9 @@ export class Browser {
 
   async close() {
     this.process.kill();
+    const hard = setTimeout(() => this.process.kill('SIGKILL'), 3000);
     await this.ended;
+    clearTimeout(hard);
     rmSync(this.folder, { recursive: true, force: true, maxRetries: 5 });
   }
 }
@@ -145,6 +147,12 @@ export class Page {
     if (errorText) throw new Error(`${address}: ${errorText}`);
     // Another part of the same page is not loaded again.
     await Promise.race([loaded, address.includes('#') ? pause(1000) : loaded]);
+  }
+
+  async reload() {
+    const loaded = new Promise((resolve) => this.on('Page.loadEventFired', resolve));
+    await this.send('Page.reload');
+    await loaded;
   }
 
   async size(width, height) {

@@ -174,7 +174,7 @@ class CalibrateScreen {
     this.calibrated.clear();
     if (files.length === 0) return;
     const taken = new Set(files.map(([name]) => name)), report = freeName('report.html', taken), model = freeName('model.yaml', taken);
-    const words = ['calibrate', operand(files[0][0]), '--procedure', this.procedure.value, ...this.place(), ...this.options.words(), '--poses', '-o', model, '--report', report];
+    const words = ['calibrate', operand(this.choice.logs()[0][0]), '--procedure', this.procedure.value, ...this.place(), ...this.options.words(), '--poses', '-o', model, '--report', report];
     const done = await this.calibrated.run([...words, '--json'], { files, begin: 'Calibrating …' });
     this.options.mark(this.calibrated.error);
     if (done) this.showCalibrated(done, words, report, model);

@@ -47,25 +47,29 @@ class LogScreen {
 
   /** What is in the logs, and what is missing; a log of a sensor at rest is identified at once. */
   async look() {
-    const turn = ++this.turn, { files } = this.choice;
+    const turn = ++this.turn, logs = this.choice.logs();
     if (this.identified.waiting) this.identified.cancel();
     this.identified.clear();
     this.about.clear();
     this.go.hidden = true;
     this.sort.replaceChildren();
     const records = [];
-    for (const file of files) records.push(await this.lookAt(file, turn));
-    if (turn !== this.turn || files.length === 0 || records.includes(null)) return;
+    for (const [name] of logs) {
+      const record = await this.lookAt(name, turn);
+      if (turn !== this.turn || !record) return; // what is missing stays to be seen
+      records.push(record);
+    }
+    if (logs.length === 0) return;
     this.go.hidden = false;
-    if (files.length > 1) this.askSort();
+    if (logs.length > 1) this.askSort();
     else if (records[0].motion === 'at_rest') this.identify();
     else this.about.result.append(element('p', {}, 'Noise is identified from a sensor at rest. A log of poses is for ', element('a', { href: '#calibrate' }, 'calibration'), '.'));
   }
 
   /** @return the record of a log that can be identified; null if something is missing */
-  async lookAt([name, content], turn) {
+  async lookAt(name, turn) {
     const words = ['info', operand(name), ...this.options.words()];
-    const done = await this.about.run([...words, '--json'], { files: [[name, content]], begin: `Reading ${name} …` });
+    const done = await this.about.run([...words, '--json'], { files: this.choice.files, begin: `Reading ${name} …` });
     if (turn !== this.turn) return null;
     const error = done ? done.json.error : this.about.error;
     if (error && error.code === 'unsupported') this.about.showProblem({ ...error, next: commandLine(['convert', operand(name), name.replace(/\.\w+$/, '') + '.npz']) });
@@ -73,8 +77,9 @@ class LogScreen {
     this.options.mark(error);
     if (result) this.about.result.append(this.summary(name, done.json, words));
     if (!result || error) return null;
-    if (result.topics.length > 0 && !this.options.value('topic')) {
-      this.askTopic(result.topics);
+    const readable = result.topics.filter((topic) => topic.readable);
+    if (readable.length > 1 && !this.options.value('topic')) {
+      this.askTopic(readable);
       return null;
     }
     return result.record;
@@ -102,7 +107,7 @@ class LogScreen {
       this.look();
     };
     this.about.result.append(element('p', {}, 'Which of its sensors?'), element('div', { class: 'buttons', 'data-part': 'topics' },
-      topics.filter(({ readable }) => readable).map((entry) => element('button', { type: 'button', onclick: take(entry) },
+      topics.map((entry) => element('button', { type: 'button', onclick: take(entry) },
         `${entry.topic}${entry.instance > 0 ? `, instance ${entry.instance}` : ''}, ${entry.samples ?? '?'} samples`))));
   }
 
@@ -115,7 +120,8 @@ class LogScreen {
   }
 
   async identify() {
-    const turn = this.turn, { files } = this.choice, names = files.map(([name]) => name), taken = new Set(names);
+    const turn = this.turn, { files } = this.choice, taken = new Set(files.map(([name]) => name));
+    const names = this.choice.logs().map(([name]) => name);
     const [report, model] = [freeName('report.html', taken), freeName('model.yaml', taken)];
     const sort = this.sort.querySelector('input:checked');
     const words = ['identify', ...names.map(operand), ...(sort ? ['--' + sort.value] : []), ...this.options.words(), '-o', model, '--report', report];
