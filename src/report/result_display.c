@@ -93,6 +93,12 @@ void imk_result_animation(imk_result *result, const imk_animation *animation, co
     made->animation.clock = imki_arena_text(arena, animation->clock);
     made->animation.x = imki_arena_numbers(arena, animation->x, animation->count, 1);
     made->animation.y = imki_arena_numbers(arena, animation->y, animation->count, 1);
+    if (animation->law_count > 0) {
+        made->animation.law_x =
+            imki_arena_numbers(arena, animation->law_x, animation->law_count, 1);
+        made->animation.law_y =
+            imki_arena_numbers(arena, animation->law_y, animation->law_count, 1);
+    }
 }
 
 void imk_result_drawing(imk_result *result, const char *svg, const char *caption)
