@@ -453,6 +453,13 @@ static void next_lines_succeed(void **state)
     check_contains(out, "Next: imukit convert w.yaml filter.yaml --to filter --rate 100Hz", out);
     assert_int_equal(run("$I convert w.yaml filter.yaml --to filter --rate 100Hz"), 0);
     assert_int_equal(run("$I grade w.yaml"), 1);
+    /* What a page suggests reads the log as it was read. */
+    assert_int_equal(run("sed '1s/ .[^,]*//g' w.csv > bare.csv && $I identify bare.csv "
+                         "--time-unit s --gyro-unit=deg/s -o w.yaml --report p.html --json && grep "
+                         "-o 'imukit identify .* --into MODEL' p.html"),
+                     0);
+    check_contains(out, "imukit identify bare.csv --time-unit s --gyro-unit=deg/s --into MODEL",
+                   "page");
     sweep();
 }
 
