@@ -104,7 +104,7 @@ class LogScreen {
 
   columns({ rows, columns, rows_from: from }) {
     const shown = columns.map(({ name, unit }) => `${name} [${unit || '?'}]`).join(', ');
-    return element('p', { class: 'weak' }, `${rows} rows${from === 'size' ? ', by its size' : ''}: ${shown}`);
+    return element('p', { class: 'weak' }, `${rows} ${rows === 1 ? 'row' : 'rows'}${from === 'size' ? ', by its size' : ''}: ${shown}`);
   }
 
   /** Which of the sensors in a log. */
