@@ -13,9 +13,10 @@ const imukitOverlay = (() => {
 
   /* A point in a unit that is `scale` times as small. */
   function scaled(point, scale) {
+    const times = value => value === null ? null : value * scale; // null: an open limit
     const limits = point.lower !== undefined &&
-      {lower: point.lower * scale, upper: point.upper * scale};
-    return {x: point.x, y: point.y * scale, ...limits};
+      {lower: times(point.lower), upper: times(point.upper)};
+    return {x: point.x, y: times(point.y), ...limits};
   }
 
   /* ---- layers -------------------------------------------------------------------------------- */
