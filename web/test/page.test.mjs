@@ -187,6 +187,17 @@ test('what runs can be cancelled, and begun anew', async () => {
   });
 });
 
+test('drift with updates tells how far it is, and can be cancelled', async () => {
+  await withPage('#device/tactical', {}, async (page) => {
+    await page.until(`document.querySelector('#device-drift svg')`);
+    await page.value(`(() => { const { screen } = screens.device; screen.set('duration', '24 h'); screen.set('aid', 'height 1 m at 1 Hz'); })()`);
+    await page.until(`document.querySelector('#device-drift [data-part="status"]').textContent === 'analysing'
+      && /^ *\\d+ %.* left$/.test(document.querySelector('#device-drift [data-part="far"]').textContent)`);
+    await page.click('#device-drift [data-part="cancel"]');
+    await page.until(nothingWaits);
+  });
+});
+
 test('a worker that throws fails what waits for it, and the next has a new one', async () => {
   await withPage('', {}, async (page) => {
     const thrown = (act) => page.value(`(${act})(new Engine()).then(() => 'nothing', (reason) => reason.message)`);
