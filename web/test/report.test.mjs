@@ -173,7 +173,7 @@ test('a sensor of the catalogue and files are laid over; another file is refused
   for (const file of ['other.json', 'other.html']) {
     await page.choose('.over input', path(file));
     await page.until(`t.key('other')`, 2);
-    await page.until(`t.panel.querySelectorAll('path.points').length > 1`, 2);
+    await page.until(`t.plot.querySelectorAll('path.points').length > 1`, 2);
     await stepTo(page, 'other');
     assertTold(await page.value('t.told()'), 'other', other.channels[0].points[0]);
     await page.value(`t.press('Take away')`);
@@ -187,13 +187,21 @@ test('a sensor of the catalogue and files are laid over; another file is refused
   }
 }));
 
+test('what is laid over has a key of its own, whatever it is called', () => withReport('still.html', {}, async (page) => {
+  writeFileSync(path('log.json'), readFileSync(path('other.json')));
+  await page.choose('.over input', path('log.json'));
+  await page.until(`t.key('log, laid over')`, 2);
+  await page.value(`t.key('log').click()`);
+  await page.until(`t.plot.querySelectorAll('path.points').length === 1`, 2);
+}));
+
 test('what has no logarithm is left out of what is laid over, and an open interval stays open', () => withReport('still.html', {}, async (page) => {
   const changed = structuredClone(other), [{ points }] = changed.channels;
   points[3].deviation.value = 0;
   points[4].upper.value = null;
   writeFileSync(path('odd.json'), JSON.stringify({ command: 'allan', result: changed }));
   await page.choose('.over input', path('odd.json'));
-  await page.until(`t.panel.querySelectorAll('path.points').length > 1`, 2);
+  await page.until(`t.plot.querySelectorAll('path.points').length > 1`, 2);
   assert.ok(!/NaN|Infinity/.test(await page.value('t.look()')));
   await stepTo(page, 'odd');
   for (let k = 0; k < 3; k++) await page.press('ArrowRight');

@@ -123,7 +123,9 @@ const imukitOverlay = (() => {
       for (const panel of panels)
         panel.layOver(layers.flatMap((layer, i) => curvesFor(panel.data, layer, colors[i % colors.length])));
     };
-    const add = layer => {
+    const add = ({name, curves}) => {
+      const own = panels.some(panel => panel.own.some(curve => curve.group === name));
+      const layer = {name: own ? `${name}, laid over` : name, curves}; // has a key of its own
       layers = [...layers.filter(other => other.name !== layer.name), layer];
       const used = panels.some(panel => curvesFor(panel.data, layer, 0).length > 0);
       problem.textContent = used ? '' : `${layer.name} has no sensor of the kinds that are shown here.`;
