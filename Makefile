@@ -7,6 +7,7 @@
 #   make tidy-deep  what `make check` reads with clang's analyzer, with 75 times its patience
 #   make sanitize-all  every test with the sanitizers, of which `make check` runs a part
 #   make bench   speed against yardsticks: build/bench.csv
+#   make bench-web  speed of the page in Chromium: frames, opening, long logs
 #   make experiments  build the long statistical experiments: build/experiments/*
 #   make experiments-all  run them all and renew experiments/results
 #   make faults  let memory, files and the disk fail, call by call, under every verb: some minutes
@@ -34,7 +35,7 @@ quiet = >$(BUILD)/make.log 2>&1 || { cat $(BUILD)/make.log; exit 1; }
 configure = mkdir -p $(BUILD) && $(alone) cmake -S . -B $(BUILD) -D CMAKE_BUILD_TYPE=Release
 compile = $(alone) cmake --build $(BUILD) -j $(JOBS)
 
-.PHONY: all demo test check tidy-deep sanitize-all bench experiments experiments-all faults fuzz octave web test-web mpi python install-python install deps clean help
+.PHONY: all demo test check tidy-deep sanitize-all bench experiments experiments-all faults fuzz octave web test-web bench-web mpi python install-python install deps clean help
 
 all:
 	@tools/install_dependencies.sh build
@@ -69,6 +70,13 @@ sanitize-all:
 bench:
 	@tools/install_dependencies.sh build bench
 	@$(alone) BUILD=$(BUILD) tools/run_bench
+
+bench-web:
+	@tools/install_dependencies.sh build web check
+	@$(configure) $(quiet)
+	@$(compile) --target imukit-command $(quiet)
+	@$(alone) BUILD=$(BUILD) tools/build_web.sh
+	@$(alone) BUILD=$(BUILD) node --no-warnings bench/page.mjs
 
 experiments:
 	@tools/install_dependencies.sh build

@@ -311,7 +311,12 @@ def pages_of_everything():
     options = set(re.findall(r"--[a-z][a-z-]*", " ".join(helps.values())))
     for page in pages:
         page.check_words(options | {"--help"})
-    return pages + [help_page(verb, text) for verb, text in helps.items()]
+    # So do findings, from which sentences that judge are made.
+    findings = Page("src/report/finding_text.c", "")
+    for number, line in enumerate((ROOT / findings.name).read_text().splitlines(), 1):
+        for option in set(re.findall(r"--[a-z][a-z-]*", line)) - options - {"--help"}:
+            findings.complain(number, f"no verb has an option {option}")
+    return [*pages, findings] + [help_page(verb, text) for verb, text in helps.items()]
 
 
 FAULTS = """```sh

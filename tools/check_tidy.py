@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""clang-tidy (.clang-tidy) on the libraries, the command, the extension of Python, the examples and the
-fuzz entry points, with clang's own warnings.
+"""clang-tidy (.clang-tidy) on the libraries, the command, the extension of Python, the examples, the
+fuzz entry points and what is in the page only, with clang's own warnings.
 
     tools/check_tidy.py          the analyzer gives up on a function after 3,000 steps
     tools/check_tidy.py --deep   after 225,000, its own limit: five minutes (make tidy-deep)
@@ -30,6 +30,9 @@ FILES_AT_ONCE = 12
 # clang's own, for what only it warns about: cmake/flags.cmake has gcc's.
 WARNINGS = """-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -Wstrict-prototypes -Wmissing-prototypes""".split()
+# What web/core is compiled with (web/CMakeLists.txt); its functions are called from JavaScript.
+WEB = """--target=wasm32-wasi -include web/core/machine.h -D_Thread_local= -D_WASI_EMULATED_SIGNAL
+    -D_WASI_EMULATED_MMAN -D_WASI_EMULATED_PROCESS_CLOCKS -Wno-missing-prototypes""".split()
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
 
@@ -42,12 +45,15 @@ def package(*names):
     return None
 
 
-def own_flags(name, text):
+def own_flags(file, text):
     """What a file is compiled with besides; None when it cannot be. `text`: with all it includes."""
+    name = file.name
     for end, flags in [("avx2.c", ["-mavx2", "-mfma"]), ("fma.c", ["-mfma"]),
                        ("avx512.c", ["-mavx512f", "-mavx512dq"])]:
         if name.endswith(end):
             return flags
+    if pathlib.Path("web/core") in file.parents:
+        return WEB if pathlib.Path("/usr/include/wasm32-wasi").exists() else None
     if "#include <mex.h>" in text:
         place = shutil.which("mkoctfile") and subprocess.run(
             ["mkoctfile", "-p", "OCTINCLUDEDIR"], capture_output=True, text=True).stdout.strip()
@@ -96,7 +102,7 @@ def stale(files, deep):
     texts, found = Texts(), {}
     for file in files:
         text = texts.all_of(file)
-        flags = own_flags(file.name, text)
+        flags = own_flags(file, text)
         if flags is None:
             continue
         analyzer = f"max-nodes={225000 if deep else 3000}"
@@ -129,7 +135,8 @@ def main():
     os.chdir(ROOT)
     PASSED.mkdir(parents=True, exist_ok=True)
     # The largest first, so that nobody waits for them at the end.
-    files = sorted((path for folder in ["src", "cli", "matlab", "python", "examples", "fuzz"]
+    files = sorted((path for folder in ["src", "cli", "matlab", "python", "examples", "fuzz",
+                                   "web"]
                     for path in pathlib.Path(folder).rglob("*.c")),
                    key=lambda path: -path.stat().st_size)
     batches = [(flags, group[i:i + FILES_AT_ONCE])

@@ -3,11 +3,11 @@
  * they must be. */
 #include "campaign/campaign_run.h"
 #include "drift_parts.h"
+#include "shell/job_progress.h"
 
 #include "imukit/model_file.h"
 #include "imukit/names.h"
 #include "imukit/show.h"
-#include "imukit/thread_pool.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -309,9 +309,8 @@ static int drift(work *w)
     const drift_scene *scene = &w->scene;
     const imk_model *models[IMK_DRIFT_MODELS_MAX], *whole[IMK_DRIFT_MODELS_MAX];
     imk_error error;
-    imk_thread_pool *pool = imk_thread_pool_create(campaign_threads(o->threads.value));
-    const imk_executor executor = imk_thread_pool_executor(pool);
-    const imk_job job = {.executor = &executor};
+    threaded_job t;
+    threaded_job_begin(&t, NULL, campaign_threads(o->threads.value));
     imk_drift_models_settings settings = imk_drift_models_default();
     settings.drift = scene->settings;
     settings.calibrated = o->compensated;
@@ -326,8 +325,8 @@ static int drift(work *w)
     if (w->whole[0])
         settings.filter_models = whole;
     const imk_status status = imk_drift_models_run(w->count, models, w->name, &scene->times,
-                                                   &settings, &job, &w->r, &error);
-    imk_thread_pool_destroy(pool);
+                                                   &settings, &t.job, &w->r, &error);
+    threaded_job_end(&t);
     int code = status == IMK_OK ? -1 : refuse(w, &error);
     if (code < 0 && o->monte_carlo.given)
         code = drift_runs(o, scene, w->r);

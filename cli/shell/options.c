@@ -8,6 +8,7 @@
 #include "imukit/names.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -365,6 +366,15 @@ static int check_operands(const verb *v, size_t count)
     return -1;
 }
 
+static int refuse_operand(const verb *v, const char *word)
+{
+    char most[40] = "";
+    if (strstr(v->operands, "..."))
+        snprintf(most, sizeof most, ", at most %zu of them", v->operands_maximum);
+    return command_misused("\"%s\" is one word too many: imukit %s %s%s", word, v->name,
+                           v->operands, most);
+}
+
 int options_parse(const verb *v, int argument_count, char **arguments, void *settings,
                   const char **operands)
 {
@@ -387,8 +397,7 @@ int options_parse(const verb *v, int argument_count, char **arguments, void *set
         } else if (operand_count < v->operands_maximum) {
             operands[operand_count++] = word;
         } else {
-            return command_misused("\"%s\" is one word too many: imukit %s %s", word, v->name,
-                                   v->operands);
+            return refuse_operand(v, word);
         }
     }
     int code = check_operands(v, operand_count);

@@ -94,6 +94,10 @@ typedef struct imk_drift_settings {
     const imk_aid *aid;
     const imk_aid *filter_aid;     /**< how the filter describes the same aids; NULL: as they are */
     const imk_model *filter_model; /**< the model that the filter is made for; NULL: the model */
+    /** Called by imk_drift_covariance() on its thread when the errors are computed up to `time`
+     * [s]; false ends it with IMK_ERROR_CANCELLED. NULL: nobody is told. */
+    bool (*progress)(void *context, double time);
+    void *progress_context;
 } imk_drift_settings;
 
 /** At rest at 45 deg north, level, heading north, 100 Hz, slaved vertical, perfect start. */

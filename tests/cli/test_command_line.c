@@ -79,7 +79,9 @@ static void test_wrong_usage(void **state)
                   "MODEL\n" TRY("simulate"));
     check_message("$I grade a b c d e f g h i", 2,
                   "imukit grade: error: \"i\" is one word too many: imukit grade "
-                  "MODEL...\n" TRY("grade"));
+                  "MODEL..., at most 8 of them\n" TRY("grade"));
+    check_message("$I info a b", 2,
+                  "imukit info: error: \"b\" is one word too many: imukit info LOG\n" TRY("info"));
     check_message("$I convert a.csv", 2,
                   "imukit convert: error: an operand is missing: imukit convert IN "
                   "OUT\n" TRY("convert"));

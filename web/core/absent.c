@@ -7,23 +7,25 @@
 #include "base/text_internal.h"
 #include "imukit/figure_file.h"
 #include "imukit/memory_limit.h"
+#include "imukit/names.h"
 #include "imukit/thread_pool.h"
 #include "io/file/input_copy_internal.h"
 #include "io/file/leftovers_internal.h"
 #include "io/file/nameless_file_internal.h"
+#include "io/file/output_packing_internal.h"
 #include "io/foreign/parameter_internal.h"
 #include "io/log/log_formats_internal.h"
 #include "io/log/log_reader_internal.h"
+#include "io/log/ros/log_mcap_write_internal.h"
 #include "io/plot/drawing_program_internal.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <unistd.h>
-#include <zlib.h>
-#include <zstd.h>
 
 /* ---- threads: one ------------------------------------------------------------------------- */
 
@@ -112,10 +114,14 @@ imk_status imki_nameless_write(int file, const char *bytes, size_t size, const c
                          "a file");
 }
 
+/* In memory, as all files here. */
 int imki_open_nameless(void)
 {
-    errno = ENOTSUP;
-    return -1;
+    static const char name[] = ".nameless";
+    const int file = open(name, O_RDWR | O_CREAT | O_EXCL);
+    if (file >= 0)
+        unlink(name);
+    return file;
 }
 
 /* There are no links, and one folder: a name is what it says. */
@@ -163,80 +169,66 @@ static imk_status refuse(imk_log_reader *reader, imk_error *error)
                          "a file that the command has converted: imukit convert LOG out.npz");
 }
 
-const imki_log_codec imki_log_hdf5 = {.open = refuse};
-const imki_log_codec imki_log_rosbag2 = {.open = refuse};
+static imk_status refuse_writing(imki_log_output *log, const char *path, imk_error *error)
+{
+    (void)log;
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path,
+                         "a format that the page does not write",
+                         "a name ending in .csv, .npy, .npz, .mat or .bag, or the command");
+}
+
+const imki_log_codec imki_log_hdf5 = {.open = refuse, .create = refuse_writing};
+const imki_log_codec imki_log_rosbag2 = {.open = refuse, .create = refuse_writing};
 
 /* Compressed files are read, not written. */
-int deflateInit2_(z_streamp stream, int level, int method, int window, int memory, int strategy,
-                  const char *version, int size)
+imk_status imki_packing_start(const char *path, imki_packing **packing, imk_error *error)
 {
-    (void)stream, (void)level, (void)method, (void)window, (void)memory, (void)strategy;
-    (void)version, (void)size;
-    return Z_VERSION_ERROR;
+    *packing = NULL;
+    if (!imk_has_ending(path, ".gz") && !imk_has_ending(path, ".zst"))
+        return IMK_OK;
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path,
+                         "compressed files, which the page does not write",
+                         "a name without .gz or .zst, or the command");
 }
 
-int deflateSetHeader(z_streamp stream, gz_headerp header)
+int imki_packing_step(imki_packing *packing, const unsigned char **bytes, size_t *size, bool last,
+                      unsigned char *room, size_t room_size, size_t *used, bool *more)
 {
-    (void)stream, (void)header;
-    return Z_STREAM_ERROR;
+    (void)packing, (void)bytes, (void)size, (void)last, (void)room, (void)room_size, (void)used;
+    *more = false;
+    return ENOTSUP;
 }
 
-int deflate(z_streamp stream, int flush)
+void imki_packing_free(imki_packing *packing)
 {
-    (void)stream, (void)flush;
-    return Z_STREAM_ERROR;
+    (void)packing;
 }
 
-int deflateEnd(z_streamp stream)
+imk_status imki_mcap_create(imki_log_output *log, const char *path, imk_error *error)
 {
-    (void)stream;
-    return Z_STREAM_ERROR;
+    return refuse_writing(log, path, error);
 }
 
-ZSTD_CCtx *ZSTD_createCCtx(void)
+void imki_mcap_begin(imki_log_output *log)
 {
-    return NULL;
+    (void)log;
 }
 
-size_t ZSTD_freeCCtx(ZSTD_CCtx *context)
+imk_status imki_mcap_write(imki_log_output *log, const char *bytes, size_t size, size_t rows)
 {
-    (void)context;
-    return 0;
+    (void)log, (void)bytes, (void)size, (void)rows;
+    return IMK_ERROR_UNSUPPORTED;
 }
 
-size_t ZSTD_compressBound(size_t size)
+imk_status imki_mcap_end(imki_log_output *log, imk_error *error)
 {
-    return size;
+    (void)log;
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "", "");
 }
 
-size_t ZSTD_compress2(ZSTD_CCtx *context, void *out, size_t room, const void *in, size_t size)
+void imki_mcap_discard(imki_log_output *log)
 {
-    (void)context, (void)out, (void)room, (void)in, (void)size;
-    return (size_t)-1;
-}
-
-ZSTD_CStream *ZSTD_createCStream(void)
-{
-    return NULL;
-}
-
-size_t ZSTD_freeCStream(ZSTD_CStream *stream)
-{
-    (void)stream;
-    return 0;
-}
-
-size_t ZSTD_CCtx_setParameter(ZSTD_CCtx *context, ZSTD_cParameter parameter, int value)
-{
-    (void)context, (void)parameter, (void)value;
-    return (size_t)-1;
-}
-
-size_t ZSTD_compressStream2(ZSTD_CCtx *context, ZSTD_outBuffer *output, ZSTD_inBuffer *input,
-                            ZSTD_EndDirective end)
-{
-    (void)context, (void)output, (void)input, (void)end;
-    return (size_t)-1;
+    (void)log;
 }
 
 /* Called by bzip2 for a mistake of its own. */

@@ -86,12 +86,15 @@ class FileChoice {
     this.say('');
     if (!this.several) files = this.keepLast(files);
     this.files = this.files.filter(([, kept]) => !files.some(([, content]) => isSameFile(kept, content)));
-    const taken = new Set(this.files.map(([name]) => name));
-    for (const [name, content] of files) {
-      const free = freeName(name, taken);
+    const taken = new Set(this.files.map(([name]) => name)), come = [];
+    // A log before the names of its columns, which are called after it.
+    for (const [name, content] of [...files].sort(([one], [other]) => isCompanion(one, files) - isCompanion(other, files))) {
+      const log = [...come, ...this.files].find(([free, { name: given = free }]) => name === given + '.columns' && !taken.has(free + '.columns'));
+      const free = freeName(log ? log[0] + '.columns' : name, taken);
       taken.add(free);
-      this.files.push([free, content]);
+      come.push([free, content]);
     }
+    this.files.push(...come);
     this.show();
     this.change();
   }

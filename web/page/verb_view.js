@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a verb looks like on a screen: how far it is, with Cancel; its error; its page, as the report
-// of the command; the same at a terminal. Names of parts: data-part="status|cancel|error|result|
+// of the command; the same at a terminal. Names of parts: data-part="status|far|cancel|error|result|
 // terminal".
 
 'use strict';
@@ -93,11 +93,12 @@ class VerbView {
   constructor({ id, own = false }) {
     this.engine = own ? new Engine() : engine;
     this.said = element('span', { role: 'status', 'data-part': 'status' });
+    this.far = element('span', { 'aria-hidden': 'true', 'data-part': 'far' }); // changes too often to be heard
     this.cancelButton = element('button', { type: 'button', hidden: true, 'data-part': 'cancel', onclick: () => this.cancel() }, 'Cancel');
     this.problem = element('div', { role: 'alert', class: 'failed', hidden: true, 'data-part': 'error' });
     this.result = element('div', { 'data-part': 'result', 'aria-busy': 'false' });
     this.root = element('section', { id, class: 'verb' },
-      element('p', { class: 'progress' }, this.said, ' ', this.cancelButton), this.problem, this.result);
+      element('p', { class: 'progress' }, this.said, ' ', this.far, ' ', this.cancelButton), this.problem, this.result);
     this.waiting = 0;
   }
 
@@ -105,8 +106,9 @@ class VerbView {
     this.engine.cancel();
   }
 
-  say(text) {
-    this.said.textContent = text;
+  say(text, far = '') {
+    if (this.said.textContent !== text) this.said.textContent = text;
+    this.far.textContent = far;
   }
 
   /** Show an error in the command's words: { message, next }, or none. */
@@ -127,7 +129,7 @@ class VerbView {
     this.result.setAttribute('aria-busy', 'true');
     this.say(begin);
     try {
-      const done = await this.engine.run(words, { files, progress: (line) => this.say(line.replace(/\s+/g, ' ')) });
+      const done = await this.engine.run(words, { files, progress: (line) => this.say(...line.split(/ {2}(.*)/, 2)) });
       done.json = jsonOf(done);
       this.say(`${words[0]}: ${(done.milliseconds / 1000).toFixed(2)} s`);
       return this.judge(words, done);

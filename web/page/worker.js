@@ -14,13 +14,16 @@ let compiled;
 const live = { instance: null };
 
 async function doVerb({ id, words, files, environment }) {
+  let line = ''; // of the terminal, which comes in pieces: a stage, "  43 %", "  12 s left"
   const system = new PageSystem({
     words: ['imukit', ...words],
     files: new Map(files),
     environment,
     warn: (text) => {
-      const at = text.lastIndexOf('\x1b[K');
-      if (at >= 0 && text.length > at + 3) postMessage({ id, progress: text.slice(at + 3) });
+      line += text;
+      line = line.slice(Math.max(line.lastIndexOf('\x1b[K'), 0));
+      const shown = line.startsWith('\x1b[K') ? line.slice(3) : '';
+      if (text && shown && !shown.includes('\n')) postMessage({ id, progress: shown });
     },
   });
   const instance = await WebAssembly.instantiate(await compiled, system.imports);

@@ -13,14 +13,17 @@ const { PageSystem } = createRequire(import.meta.url)('../page/wasi.js');
 
 export const root = fileURLToPath(new URL('../../', import.meta.url));
 export const build = resolve(root, process.env.BUILD || 'build');
-const imukit = join(build, 'imukit');
-const compiled = new WebAssembly.Module(readFileSync(process.env.IMUKIT_WASM || join(build, 'web-objects/imukit.wasm')));
+export const imukit = join(build, 'imukit');
+
+let compiled;
+/** The module, compiled once and only for those who want it. */
+const moduleOfPage = () => (compiled ||= new WebAssembly.Module(readFileSync(process.env.IMUKIT_WASM || join(build, 'web-objects/imukit.wasm'))));
 
 /** files: [[name, bytes], …] */
 export function byPage(words, files = []) {
   const system = new PageSystem({ words: ['imukit', ...words], files: new Map(files) });
   const start = performance.now();
-  const code = system.run(new WebAssembly.Instance(compiled, system.imports).exports);
+  const code = system.run(new WebAssembly.Instance(moduleOfPage(), system.imports).exports);
   const given = new Set(files.map(([name]) => name));
   const made = [...system.files.keys()].filter((name) => !given.has(name));
   return { code, out: system.text(1), err: system.text(2), milliseconds: performance.now() - start,
@@ -30,7 +33,7 @@ export function byPage(words, files = []) {
 /** Functions of a module that does no verb. */
 export function moduleFunctions() {
   const system = new PageSystem({ words: [], files: [] });
-  const { exports } = new WebAssembly.Instance(compiled, system.imports);
+  const { exports } = new WebAssembly.Instance(moduleOfPage(), system.imports);
   system.memory = exports.memory;
   return exports;
 }

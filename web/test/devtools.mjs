@@ -192,6 +192,21 @@ export class Page {
     if (!done) throw new Error(`there is no ${selector}`);
   }
 
+  /** The mouse at a place of the window [px]. */
+  async mouse(type, { x, y }, buttons = 0) {
+    const button = type === 'mouseMoved' && !buttons ? 'none' : 'left';
+    await this.send('Input.dispatchMouseEvent', { type, x, y, button, buttons, clickCount: type === 'mouseMoved' ? 0 : 1 });
+  }
+
+  /** Press, move in two steps and let go. */
+  async drag(from, to) {
+    await this.mouse('mouseMoved', from);
+    await this.mouse('mousePressed', from, 1);
+    await this.mouse('mouseMoved', { x: (from.x + to.x) / 2, y: (from.y + to.y) / 2 }, 1);
+    await this.mouse('mouseMoved', to, 1);
+    await this.mouse('mouseReleased', to);
+  }
+
   /** Press a key: 'Tab', 'Enter', 'Escape', 'ArrowRight', ' ' or a letter; modifiers: 8 is Shift. */
   async press(key, modifiers = 0) {
     const codes = { Tab: 9, Enter: 13, Escape: 27, ' ': 32, End: 35, Home: 36, ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40 };

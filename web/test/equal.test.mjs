@@ -43,6 +43,28 @@ test('simulate: the same bytes in .npy and in a ROS bag', () => {
   sameFiles(['simulate', 'AHRS', '--rate', '100Hz', '--duration', '20s', '-o', 'log.bag']);
 });
 
+test('arrays are written as by the command; what the page does not write, it refuses in words', () => {
+  const words = ['simulate', 'AHRS', '--rate', '10Hz', '--duration', '20s', '-o'];
+  for (const name of ['log.npz', 'log.mat']) sameFiles([...words, name]);
+  for (const name of ['log.csv.gz', 'log.csv.zst', 'log.mcap', 'log.h5', 'log.db3']) {
+    const { code, err, files } = byPage([...words, name]);
+    assert.notEqual(code, 0);
+    assert.match(err, /which the page does not write|that the page does not write/, name);
+    assert.match(err, /expected a name .*, or the command/, name);
+    assert.equal(files.size, 0);
+  }
+});
+
+test('the page offers the parameter formats that hold noise, but Gazebo\'s, and they are written as by the command', () => {
+  const [, list] = /noiseFormats = \[([^\]]*)\]/.exec(readFileSync(join(root, 'web/page/conversion.js'), 'utf8'));
+  const offered = list.match(/'[^']+'/g).map((name) => name.slice(1, -1)), model = [['model.yaml', Buffer.from(byCommand(['devices', 'tactical']).out)]];
+  for (const format of offered)
+    sameFiles(['convert', 'model.yaml', 'imu.yaml', '--to', format, '--rate', '100Hz', ...(format === 'glim' ? ['--frame-rate', '10Hz'] : [])], model);
+  const [, known] = /one of (\S+)/.exec(byCommand(['convert', 'model.yaml', 'imu.yaml', '--to', 'no'], model).err);
+  const others = ['model', 'euroc', 'gazebo', 'px4', 'ardupilot', 'fusion']; // of logs and of calibrations, and Gazebo's
+  assert.deepEqual(offered.sort(), known.split('|').filter((name) => !others.includes(name)).sort());
+});
+
 const instruments = JSON.parse(byPage(['physics', '--json']).out).result.instruments.map(({ name }) => name);
 test('physics: the same bytes of every instrument', () => {
   assert.ok(instruments.length >= 12);

@@ -4,7 +4,7 @@
 //     node --test web/test/page.test.mjs      IMUKIT_WEB_LARGE=1: also a log of 480 MB
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { after, before, test as unlimited } from 'node:test';
@@ -112,6 +112,35 @@ test('a .npy log without the names of its columns asks for them, and takes them 
   });
 });
 
+test('two logs of one name keep the names of their columns, and logs that are no runs are compared', async () => {
+  const path = still('still.npy'), folders = ['one', 'two'].map((name) => join(scratch, name));
+  const copies = folders.flatMap((folder) => ['', '.columns'].map((end) => {
+    mkdirSync(folder, { recursive: true });
+    copyFileSync(path + end, join(folder, 'a.b.npy' + end));
+    return join(folder, 'a.b.npy' + end);
+  }));
+  await withPage('#log', {}, async (page) => {
+    await page.choose('#log-files-input', ...copies);
+    await page.until(`document.querySelectorAll('#log-info .summary').length === 2 && document.querySelector('#log-sort input[value="runs"]:checked')`);
+    await page.choose('#log-files-input', logOf('other.csv', 'MPU6050', '--rate', '50Hz', '--duration', '1min', '--seed', '6'));
+    await page.until(`document.querySelector('#log-sort input[value="compare"]:checked') && document.querySelector('#log-go').textContent === 'Compare'`);
+    await page.click('#log-go');
+    await page.until(identified);
+    await page.until(nothingWaits);
+    const shown = await page.value(`document.querySelector('#log-identify').innerText`);
+    assert.ok(shown.includes("imukit allan a.b.npy 'a (2).b.npy' other.csv --report report.html"), shown.slice(-600));
+    for (const name of ['a.b.npy', 'a (2).b.npy', 'other.csv']) assert.ok(shown.split(name).length > 2, name);
+  });
+});
+
+test('a log of which nobody can tell whether it rested says so, and can be identified', async () => {
+  const rows = Array.from({ length: 150 }, (_, k) => [k / 100, Math.sin(k * k), Math.cos(k * k), Math.sin(k ** 3)].join());
+  await withPage('#log', {}, async (page) => {
+    await page.choose('#log-files-input', written('short.csv', 'time [s],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s]\n' + rows.join('\n') + '\n'));
+    await page.until(`/cannot be told/.test(document.querySelector('#log-info [data-part="rest"]')?.textContent) && !document.querySelector('#log-go').hidden`);
+  });
+});
+
 test('a log is identified; its report, model and numbers can be taken away', async () => {
   await withPage('#log', {}, async (page) => {
     await page.choose('#log-files-input', still('still.csv'));
@@ -175,6 +204,17 @@ test('what runs can be cancelled, and begun anew', async () => {
     await remove(page, path + '.columns');
     await page.choose('#log-files-input', still('still.csv'));
     await page.until(identified);
+  });
+});
+
+test('drift with updates tells how far it is, and can be cancelled', async () => {
+  await withPage('#device/tactical', {}, async (page) => {
+    await page.until(`document.querySelector('#device-drift svg')`);
+    await page.value(`(() => { const { screen } = screens.device; screen.set('duration', '24 h'); screen.set('aid', 'height 1 m at 1 Hz'); })()`);
+    await page.until(`document.querySelector('#device-drift [data-part="status"]').textContent === 'analysing'
+      && /^ *\\d+ %.* left$/.test(document.querySelector('#device-drift [data-part="far"]').textContent)`);
+    await page.click('#device-drift [data-part="cancel"]');
+    await page.until(nothingWaits);
   });
 });
 

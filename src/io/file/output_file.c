@@ -5,8 +5,8 @@
  *
  * The first error is kept; everything after it is ignored until commit reports it. */
 #define _POSIX_C_SOURCE 200809L
-#define ZLIB_CONST
 #include "output_file_internal.h"
+#include "output_packing_internal.h"
 #include "output_target_internal.h"
 #include "system_error_internal.h"
 
@@ -20,8 +20,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
-#include <zstd.h>
 
 enum {
     BUFFER_SIZE = 1 << 20, /* few system calls, and still in the second-level cache */
@@ -29,16 +27,11 @@ enum {
     PRINT_SIZE = 4096
 };
 
-typedef enum encoding { ENCODING_PLAIN, ENCODING_GZIP, ENCODING_ZSTD } encoding;
-
 struct imk_output_file {
     imki_target target;
-    encoding encoding;
+    imki_packing *packing; /* NULL: none */
     unsigned char *buffer; /* bytes to write to the file: compressed ones, if it is */
     size_t used;
-    z_stream gzip;
-    gz_header gzip_header;
-    ZSTD_CStream *zstd;
     imk_status status;
     int system_error; /* errno of the first failure */
     bool prepared;
@@ -88,71 +81,25 @@ static imk_status write_plain(imk_output_file *file, const unsigned char *bytes,
     return file->status;
 }
 
-/* @param flush_mode  Z_NO_FLUSH, or Z_FINISH with the last bytes */
-static imk_status write_gzip(imk_output_file *file, const unsigned char *bytes, size_t size,
-                             int flush_mode)
+/* last: nothing follows */
+static imk_status write_packed(imk_output_file *file, const unsigned char *bytes, size_t size,
+                               bool last)
 {
-    z_stream *z = &file->gzip;
-    z->next_in = bytes;
-    int result;
-    do {
-        const uInt step = size < (1u << 30) ? (uInt)size : 1u << 30;
-        z->avail_in = step;
-        size -= step;
-        do {
-            if (file->used == BUFFER_SIZE && flush(file) != IMK_OK)
-                return file->status;
-            z->next_out = file->buffer + file->used;
-            z->avail_out = (uInt)(BUFFER_SIZE - file->used);
-            result = deflate(z, size > 0 ? Z_NO_FLUSH : flush_mode);
-            file->used = BUFFER_SIZE - z->avail_out;
-        } while (z->avail_out == 0);
-    } while (size > 0);
-    return result == Z_STREAM_ERROR ? fail(file, EINVAL) : file->status;
-}
-
-static imk_status write_zstd(imk_output_file *file, const unsigned char *bytes, size_t size,
-                             ZSTD_EndDirective directive)
-{
-    ZSTD_inBuffer in = {bytes, size, 0};
-    size_t left;
+    bool more;
     do {
         if (file->used == BUFFER_SIZE && flush(file) != IMK_OK)
             return file->status;
-        ZSTD_outBuffer out = {file->buffer, BUFFER_SIZE, file->used};
-        left = ZSTD_compressStream2(file->zstd, &out, &in, directive);
-        file->used = out.pos;
-        if (ZSTD_isError(left)) /* nothing is wrong with the bytes */
-            return fail(file, ENOMEM);
-    } while (in.pos < size || (directive == ZSTD_e_end && left > 0));
+        const int number = imki_packing_step(file->packing, &bytes, &size, last, file->buffer,
+                                             BUFFER_SIZE, &file->used, &more);
+        if (number != 0)
+            return fail(file, number);
+    } while (more);
     return file->status;
-}
-
-static bool start_compression(imk_output_file *file, const char *path)
-{
-    if (imk_has_ending(path, ".gz")) {
-        /* 15: largest window, + 16: gzip; 8: zlib's usual memory */
-        if (deflateInit2(&file->gzip, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-            return false;
-        file->gzip_header.os = 255; /* "unknown": the same bytes on every system */
-        deflateSetHeader(&file->gzip, &file->gzip_header);
-        file->encoding = ENCODING_GZIP;
-    } else if (imk_has_ending(path, ".zst")) {
-        file->zstd = ZSTD_createCStream();
-        if (!file->zstd)
-            return false;
-        ZSTD_CCtx_setParameter(file->zstd, ZSTD_c_compressionLevel, 3);
-        ZSTD_CCtx_setParameter(file->zstd, ZSTD_c_checksumFlag, 1);
-        file->encoding = ENCODING_ZSTD;
-    }
-    return true;
 }
 
 static void release(imk_output_file *file)
 {
-    if (file->encoding == ENCODING_GZIP)
-        deflateEnd(&file->gzip);
-    ZSTD_freeCStream(file->zstd);
+    imki_packing_free(file->packing);
     free(file->buffer);
     free(file);
 }
@@ -168,10 +115,14 @@ imk_status imk_output_file_open(const char *path, imk_output_file **file, imk_er
     if (!path)
         path = "-";
     imk_output_file *made = calloc(1, sizeof *made);
-    if (!made || !(made->buffer = malloc(BUFFER_SIZE)) || !start_compression(made, path)) {
-        if (made)
-            release(made);
+    if (!made || !(made->buffer = malloc(BUFFER_SIZE))) {
+        free(made);
         return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
+    }
+    const imk_status status = imki_packing_start(path, &made->packing, error);
+    if (status != IMK_OK) {
+        release(made);
+        return status;
     }
     const int number = imki_target_open(&made->target, path);
     if (number != 0) {
@@ -186,15 +137,7 @@ imk_status imk_output_file_write(imk_output_file *file, const void *bytes, size_
 {
     if (file->status != IMK_OK || size == 0)
         return file->status;
-    switch (file->encoding) {
-    case ENCODING_GZIP:
-        return write_gzip(file, bytes, size, Z_NO_FLUSH);
-    case ENCODING_ZSTD:
-        return write_zstd(file, bytes, size, ZSTD_e_continue);
-    case ENCODING_PLAIN:
-        break;
-    }
-    return write_plain(file, bytes, size);
+    return file->packing ? write_packed(file, bytes, size, false) : write_plain(file, bytes, size);
 }
 
 imk_status imk_output_file_print(imk_output_file *file, const char *format, ...)
@@ -211,7 +154,7 @@ imk_status imk_output_file_print(imk_output_file *file, const char *format, ...)
 
 bool imki_output_file_can_replace(const imk_output_file *file)
 {
-    return file->encoding == ENCODING_PLAIN && file->target.temporary != NULL;
+    return !file->packing && file->target.temporary != NULL;
 }
 
 const char *imki_output_file_temporary(const imk_output_file *file)
@@ -246,10 +189,8 @@ static void refuse(imk_output_file *file, imk_error *error)
 
 imk_status imki_output_file_prepare(imk_output_file *file, imk_error *error)
 {
-    if (file->status == IMK_OK && file->encoding == ENCODING_GZIP)
-        write_gzip(file, NULL, 0, Z_FINISH);
-    if (file->status == IMK_OK && file->encoding == ENCODING_ZSTD)
-        write_zstd(file, NULL, 0, ZSTD_e_end);
+    if (file->status == IMK_OK && file->packing)
+        write_packed(file, NULL, 0, true);
     flush(file);
     if (file->status == IMK_OK && file->target.temporary && fsync(file->target.file) != 0)
         fail(file, errno);

@@ -135,9 +135,24 @@ static imk_status find_missing(const imk_drift_models *r, imk_drift_case *one,
 
 /* ---- all ---- */
 
-static imk_status analyse(const imk_drift_models *r, imk_drift_case *one, imki_arena *arena,
-                          const imk_executor *executor, imk_error *error)
+/* How far the analyses are. With aids one of them takes a second for each hour. */
+typedef struct analyses {
+    const imk_job *job;
+    double each, before; /* of a case, of those before this one [s] */
+    double all;
+} analyses;
+
+static bool tell(void *context, double time)
 {
+    const analyses *a = context;
+    return imki_job_progress(a->job, "analysing", "min", (uint64_t)((a->before + time) / 60),
+                             (uint64_t)ceil(a->all / 60), NULL) == IMK_OK;
+}
+
+static imk_status analyse(const imk_drift_models *r, imk_drift_case *one, imki_arena *arena,
+                          analyses *told, imk_error *error)
+{
+    const imk_executor *executor = told->job->executor;
     imk_status status = imk_drift_validate(one->model, &one->settings, error);
     if (status != IMK_OK)
         return status;
@@ -146,8 +161,12 @@ static imk_status analyse(const imk_drift_models *r, imk_drift_case *one, imki_a
     one->figures = imki_arena_take(arena, one->settings.time_count * sizeof *one->figures);
     if (!memory || !one->figures)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    status = imk_drift_covariance(one->model, &one->settings, executor, &one->analysis, memory,
-                                  size, error);
+    imk_drift_settings watched = one->settings; /* others work on several threads */
+    watched.progress = tell;
+    watched.progress_context = told;
+    status =
+        imk_drift_covariance(one->model, &watched, executor, &one->analysis, memory, size, error);
+    told->before += told->each;
     if (status != IMK_OK)
         return status;
     for (size_t t = 0; t < one->analysis->time_count; t++)
@@ -157,7 +176,7 @@ static imk_status analyse(const imk_drift_models *r, imk_drift_case *one, imki_a
 }
 
 static imk_status add_case(holder *h, size_t model, bool compensated, const char *label,
-                           const imk_job *job, imk_error *error)
+                           analyses *told, imk_error *error)
 {
     imk_drift_models *r = &h->models;
     imk_drift_case *one = &r->cases[r->case_count++];
@@ -168,10 +187,7 @@ static imk_status add_case(holder *h, size_t model, bool compensated, const char
     if (!one->settings.filter_model && one->settings.aid_count > 0 && r->settings.filter_models)
         one->settings.filter_model = r->settings.filter_models[model];
     snprintf(one->label, sizeof one->label, "%.90s%s", r->name[model], label);
-    const imk_status status = analyse(r, one, &h->arena, job->executor, error);
-    return status == IMK_OK
-               ? imki_job_progress(job, "analysing", "models", model + 1, r->model_count, error)
-               : status;
+    return analyse(r, one, &h->arena, told, error);
 }
 
 /* A requirement is of a time of the table, which is on a sample. */
@@ -238,11 +254,15 @@ imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
         r->name[m] = names[m];
     }
     const bool after = settings->calibrated;
-    status = imki_job_progress(job, "analysing", "models", 0, count, error);
-    if (status == IMK_OK && after && count == 1)
-        status = add_case(h, 0, false, "", job, error);
+    const size_t cases = after && count == 1 ? 2 : count;
+    analyses told = {.job = job, .each = count > 0 ? times->time[times->count - 1] : 0};
+    told.all = (double)cases * told.each;
+    if (status == IMK_OK && !tell(&told, 0))
+        status = imk_error_set(error, IMK_ERROR_CANCELLED, NULL, NULL, NULL);
+    if (status == IMK_OK && cases > count)
+        status = add_case(h, 0, false, "", &told, error);
     for (size_t m = 0; m < count && status == IMK_OK; m++)
-        status = add_case(h, m, after, after ? ", compensated" : "", job, error);
+        status = add_case(h, m, after, after ? ", compensated" : "", &told, error);
     if (status == IMK_OK && count > 0 && settings->want.asked)
         status = imki_drift_answer(r, &h->arena, job->executor, error);
     return status;

@@ -195,8 +195,8 @@ static void begin(work *w, const imk_executor *executor)
     run_block(w, begin_source, executor);
 }
 
-/* From one report to the next. */
-static void advance(work *w, double time, double goal, const imk_executor *executor)
+/* From one report to the next. @return false: to be ended */
+static bool advance(work *w, double time, double goal, const imk_executor *executor)
 {
     while (time < goal) {
         while (time < goal && w->step_count < IMKI_DRIFT_BLOCK) {
@@ -219,7 +219,11 @@ static void advance(work *w, double time, double goal, const imk_executor *execu
         }
         imk_execute(executor, w->step_count, fill_step, w);
         run_block(w, move_source, executor);
+        const imk_drift_settings *s = w->walk.settings;
+        if (s->progress && !s->progress(s->progress_context, time))
+            return false;
     }
+    return true;
 }
 
 /* ---- all ---------------------------------------------------------------------------------------
@@ -355,7 +359,8 @@ imk_status imki_drift_covariance_on(imki_drift_earth earth, const imk_model *mod
     for (size_t i = 0; i < settings->time_count; i++) {
         l.work->time = i;
         l.time[i] = settings->time[i];
-        advance(l.work, time, settings->time[i], executor);
+        if (!advance(l.work, time, settings->time[i], executor))
+            return imk_error_set(error, IMK_ERROR_CANCELLED, NULL, NULL, NULL);
         time = settings->time[i];
     }
     omit_ranges(l.work, model);

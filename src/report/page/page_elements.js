@@ -21,15 +21,23 @@ const imukitPage = (() => {
     return made;
   }
 
-  /* Tell readers who hear the page; with `seen` those who see it, too, for two seconds. */
-  let heard = null, told = null, timer = 0;
-  function say(text, seen) {
-    if (!heard || !heard.isConnected) {
+  /* Where things are told, once for all articles, which may be hidden or taken away. It is there
+   * before anything is told: only changes are heard. */
+  let place = null, heard = null, told = null, timer = 0;
+  function voice() {
+    if (!place) {
       heard = html('div', {class: 'unseen', 'aria-live': 'polite', role: 'status'});
       told = html('div', {class: 'told', 'aria-hidden': true, hidden: ''});
-      const place = document.querySelector('.imukit');
-      place.append(heard, told);
+      place = html('div', {class: 'imukit voice'}, heard, told);
     }
+    if (!place.isConnected)
+      document.body.append(place);
+    return place;
+  }
+
+  /* Tell readers who hear the page; with `seen` those who see it, too, for two seconds. */
+  function say(text, seen) {
+    voice();
     heard.textContent = text;
     if (!seen)
       return;
@@ -45,7 +53,7 @@ const imukitPage = (() => {
   function copyField(text) {
     const field = html('textarea', {class: 'unseen', 'aria-hidden': true}), before = document.activeElement;
     field.value = text;
-    document.body.append(field);
+    voice().append(field);
     field.select();
     const done = document.execCommand('copy');
     field.remove();
@@ -155,5 +163,5 @@ const imukitPage = (() => {
     article.prepend(made);
   }
 
-  return {html, button, say, attachTable, attachTheme, setDark, keepDark};
+  return {html, button, voice, say, attachTable, attachTheme, setDark, keepDark};
 })();

@@ -8,7 +8,7 @@
 'use strict';
 
 const imukitFigures = (() => {
-  const {number, digitsFor, placeOf} = imukitAxes;
+  const {number, digitsFor, drawable, placeOf} = imukitAxes;
   const {svg, spotOf, isFilled} = imukitPanel;
   const {html, button, say} = imukitPage;
   const zoomStep = 1.5, dragLeast = 6, reach = 60; // factor, [px], [px]
@@ -127,6 +127,8 @@ const imukitFigures = (() => {
           this.hidden.delete(name);
       this.reset();
       for (const point of curves.flatMap(curve => curve.points)) {
+        if (!point || !drawable(this.data.x, point.x) || !drawable(this.data.y, point.y))
+          continue;
         const at = placeOf(this.data.x, point.x), y = Math.log10(point.y);
         if (at >= 0 && at <= 1) {
           this.y.low = Math.min(this.y.low, y - 0.1);
@@ -454,8 +456,9 @@ const imukitFigures = (() => {
       imukitOverlay.attach(figure, panels.filter(panel => panel.data.allan));
     }
     fresh(root, '.imukit .table').forEach(imukitPage.attachTable);
-    fresh(root, '.imukit-page .imukit').forEach(imukitPage.attachTheme);
+    fresh(root, '.imukit-page article.imukit').forEach(imukitPage.attachTheme);
     imukitPage.keepDark();
+    imukitPage.voice();
   }
 
   return {attach, setDark: imukitPage.setDark};

@@ -13,9 +13,10 @@ const imukitOverlay = (() => {
 
   /* A point in a unit that is `scale` times as small. */
   function scaled(point, scale) {
+    const times = value => value === null ? null : value * scale; // null: an open limit
     const limits = point.lower !== undefined &&
-      {lower: point.lower * scale, upper: point.upper * scale};
-    return {x: point.x, y: point.y * scale, ...limits};
+      {lower: times(point.lower), upper: times(point.upper)};
+    return {x: point.x, y: times(point.y), ...limits};
   }
 
   /* ---- layers -------------------------------------------------------------------------------- */
@@ -122,7 +123,9 @@ const imukitOverlay = (() => {
       for (const panel of panels)
         panel.layOver(layers.flatMap((layer, i) => curvesFor(panel.data, layer, colors[i % colors.length])));
     };
-    const add = layer => {
+    const add = ({name, curves}) => {
+      const own = panels.some(panel => panel.own.some(curve => curve.group === name));
+      const layer = {name: own ? `${name}, laid over` : name, curves}; // has a key of its own
       layers = [...layers.filter(other => other.name !== layer.name), layer];
       const used = panels.some(panel => curvesFor(panel.data, layer, 0).length > 0);
       problem.textContent = used ? '' : `${layer.name} has no sensor of the kinds that are shown here.`;

@@ -19,6 +19,22 @@ static const char rich[] = "imukit: 1\n"
                            "    velocity_random_walk: 0.06 m/s/sqrt(h)\n"
                            "    resonance: [{sigma: 2 mg, frequency: 31 Hz, q: 20}]\n";
 
+/* A row of the printed table begins so, its value is this, within a few sigmas of an estimate from
+ * ten minutes, and has no interval. */
+static void check_row(const char *name, double value, double tolerance, const char *unit)
+{
+    const char *row = strstr(out, name);
+    double found;
+    char axis[8], interval[8], shown[16];
+    const char *cells = row ? strstr(row, " x ") : NULL;
+    if (!cells || sscanf(cells, " %7s %lf %7s %15s", axis, &found, interval, shown) != 4)
+        fail_msg("no row \"%s\" in\n%s", name, out);
+    assert_string_equal(axis, "x");
+    assert_true(found > value - tolerance && found < value + tolerance);
+    assert_string_equal(interval, "-");
+    assert_string_equal(shown, unit);
+}
+
 static void test_all_is_drawn(void **state)
 {
     (void)state;
@@ -26,7 +42,11 @@ static void test_all_is_drawn(void **state)
     assert_int_equal(run("$I simulate rich.yaml --rate 100Hz --duration 10min --seed 3 -o r.csv"),
                      0);
     assert_int_equal(run("$I identify r.csv --report r.html"), 0);
+    check_row("line of 7 Hz", 60, 2, "deg/h");
+    check_row("output filter, bandwidth", 20, 1, "Hz");
+    check_row("resonance at 3", 2, 0.2, "mg");
     read_text("r.html", out);
+    check_contains(out, ">line of 7 Hz</th>", "row of the page");
     check_contains(out, "angle random walk, filter of ", "filter");
     check_contains(out, ">Gauss-Markov, ", "Gauss-Markov");
     check_contains(out, ">line of 7 Hz<", "line");

@@ -190,6 +190,18 @@ static void test_tracks(void **state)
     snprintf(whole, sizeof whole, "%s--model navigation", line);
     check_begins(whole, "Usable after 2 min: the horizontal error is ");
     check_begins(line, "Usable with care after 2 min: ");
+    /* Pushed a little after its alignment: an error of 3.6 and of 6.4 times the sigma. */
+    static const char *const pushed[][2] = {
+        {"0.0015", "Usable with care after 2 min: the horizontal error is 10.1 m, 3.6 times the "},
+        {"0.0026", "Not usable after 2 min: the horizontal error is 17.8 m, 6.4 times the "}};
+    for (size_t k = 0; k < 2; k++) {
+        snprintf(whole, sizeof whole,
+                 "awk -F, -v OFS=, '/^[0-9]/ && $1 > 121 {$5 += %s} 1' parked.csv >pushed.csv; "
+                 "$I navigate pushed.csv --position '45 deg, 0 deg, 0 m' --align 2min --model "
+                 "navigation",
+                 pushed[k][0]);
+        check_begins(whole, pushed[k][1]);
+    }
     /* Readings that do not fit, by sigmas that are a thousandth of the true ones. */
     assert_int_equal(run("$I simulate tactical --rate 20Hz --duration 4min --latitude 45deg "
                          "-o aided.csv --aid 'position 1 m' --aid-output gnss.csv"),

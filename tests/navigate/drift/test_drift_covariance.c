@@ -803,6 +803,51 @@ static void alignment_needs_a_rest(void **state)
     }
 }
 
+/* Times that were told, and after which the analysis is to end. */
+typedef struct watch {
+    double last, end;
+    size_t calls;
+} watch;
+
+static bool look(void *context, double time)
+{
+    watch *w = context;
+    assert_true(time > w->last);
+    w->last = time;
+    w->calls++;
+    return time < w->end;
+}
+
+/* With an aid an hour has many blocks; the last is told with the last time. */
+static void progress_is_told_and_ends_the_analysis(void **state)
+{
+    (void)state;
+    const double times[] = {600, 3600};
+    imk_model model;
+    imk_drift_settings s = imk_drift_default();
+    imk_aid aid = imk_aid_default(IMK_AID_HEIGHT);
+    watch all = {.end = HUGE_VAL}, part = {.end = 1000};
+    imk_device_model(imk_device_find("tactical"), &model);
+    s.rate = 10;
+    s.time = times;
+    s.time_count = 2;
+    s.aid = &aid;
+    s.aid_count = 1;
+    s.progress = look;
+    s.progress_context = &all;
+    free(analyse_on(wgs84, &model, &s, NULL));
+    assert_true(all.last == times[1] && all.calls > 100);
+    s.progress_context = &part;
+    const size_t size = imk_drift_covariance_size(&model, &s);
+    void *memory = aligned_alloc(64, size);
+    imk_drift_analysis *analysis = NULL;
+    CHECK_STATUS(imk_drift_covariance(&model, &s, NULL, &analysis, memory, size, NULL),
+                 IMK_ERROR_CANCELLED);
+    assert_null(analysis);
+    assert_true(part.last >= 1000 && part.last < 1100);
+    free(memory);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -824,6 +869,7 @@ int main(void)
         cmocka_unit_test(poles_and_perfection),
         cmocka_unit_test(alignment_needs_a_rest),
         cmocka_unit_test(what_is_not_valid_is_refused),
+        cmocka_unit_test(progress_is_told_and_ends_the_analysis),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -190,7 +190,7 @@ class DeviceScreen {
     this.began = performance.now();
     // What was drawn of another sensor would be read as this one's.
     if (names !== this.drawn) this.drift.result.replaceChildren();
-    const begin = this.settings.aid ? 'Computing, about a second for each hour with updates …' : 'Computing …';
+    const begin = this.settings.aid ? 'Computing, about two seconds for each hour with updates …' : 'Computing …';
     const done = await this.drift.run([...words, '--json'], { files: sensors.files(this.names()), begin });
     if (!done) return;
     this.drawn = names;

@@ -15,6 +15,13 @@ screens.log = {
   },
 };
 
+/** Can two logs be runs of one sensor? They have the same channels at the same rate. */
+function belongTogether(one, other) {
+  const channels = ({ columns }) => columns.map(({ name }) => name).filter((name) => /^(gyro|accel)/.test(name)).sort().join();
+  const [a, b] = [one, other].map(({ interval }) => interval?.value);
+  return channels(one) === channels(other) && !(Math.abs(a - b) > 0.01 * b);
+}
+
 class LogScreen {
   constructor(root) {
     this.choice = new FileChoice({ id: 'log-files', label: 'Choose a log', change: () => {
@@ -53,6 +60,7 @@ class LogScreen {
     this.about.clear();
     this.go.hidden = true;
     this.sort.replaceChildren();
+    this.go.textContent = 'Identify';
     const records = [], errors = [];
     for (const [name] of logs) {
       const record = await this.lookAt(name, turn);
@@ -66,9 +74,18 @@ class LogScreen {
     }
     if (logs.length === 0 || records.length < logs.length) return;
     this.go.hidden = false;
-    if (logs.length > 1) this.askSort();
+    if (logs.length > 1) this.askSort(records);
     else if (records[0].motion === 'at_rest') this.identify();
-    else if (records[0].motion !== 'unknown') this.about.result.append(element('p', {}, 'Noise is identified from a sensor at rest. A log of poses is for ', element('a', { href: '#calibrate' }, 'calibration'), '.'));
+    else this.about.result.append(this.hintOfRest(records[0].motion));
+  }
+
+  /** Why a log is not identified at once. */
+  hintOfRest(motion) {
+    const parts = { poses: ['It rests in several poses, which is for ', element('a', { href: '#calibrate' }, 'calibration'), '.'],
+      moves: ['It moves. If it also rests, choose that part above: leave out before, leave out after.'],
+      unknown: ['Whether this one rested cannot be told: its gyros or accelerometers are missing, or it has less than three seconds without holes. If it did, identify it.'] };
+    this.options.root.open ||= motion === 'moves';
+    return element('p', { 'data-part': 'rest' }, 'Noise is identified from a sensor at rest. ', parts[motion]);
   }
 
   /** @return the record of a log that can be identified; null if something is missing */
@@ -119,31 +136,46 @@ class LogScreen {
         `${entry.topic}${entry.instance > 0 ? `, instance ${entry.instance}` : ''}, ${entry.samples ?? '?'} samples`))));
   }
 
-  /** Several logs: of what? */
-  askSort() {
-    const choice = (value, text, checked) => element('label', {}, element('input', { type: 'radio', name: 'sort', value, checked }), ' ' + text);
+  /** Several logs: of what? Those of other channels or another rate are no runs of one sensor. */
+  askSort(records) {
+    const alike = records.every((record) => belongTogether(record, records[0]));
+    const choice = (value, text) => element('label', {}, element('input', { type: 'radio', name: 'sort', value, checked: value === (alike ? 'runs' : 'compare'),
+      onchange: () => this.nameGo() }), ' ' + text);
     this.sort.replaceChildren(element('fieldset', {}, element('legend', {}, 'These logs are'),
-      choice('runs', 'runs of one sensor: one model, and what changes from run to run', true),
-      choice('devices', 'of different sensors: their mean and spread')));
+      choice('runs', 'runs of one sensor: one model, and what changes from run to run'),
+      choice('devices', 'of different sensors of one type: their mean and spread'),
+      choice('compare', 'to be compared: Allan deviations of each, channel by channel, without a model')));
+    this.nameGo();
+  }
+
+  /** What is done with several logs; '' with one. */
+  sortOf() {
+    const chosen = this.sort.querySelector('input:checked');
+    return chosen ? chosen.value : '';
+  }
+
+  nameGo() {
+    this.go.textContent = this.sortOf() === 'compare' ? 'Compare' : 'Identify';
+    this.go.hidden = false;
   }
 
   async identify() {
     const turn = this.turn, { files } = this.choice, taken = new Set(files.map(([name]) => name));
-    const names = this.choice.logs().map(([name]) => name);
+    const names = this.choice.logs().map(([name]) => operand(name)), reading = this.options.words(), sort = this.sortOf();
     const [report, model] = [freeName('report.html', taken), freeName('model.yaml', taken)];
-    const sort = this.sort.querySelector('input:checked');
-    const words = ['identify', ...names.map(operand), ...(sort ? ['--' + sort.value] : []), ...this.options.words(), '-o', model, '--report', report];
+    const words = sort === 'compare' ? ['allan', ...names, ...reading, '--report', report]
+      : ['identify', ...names, ...(sort ? ['--' + sort] : []), ...reading, '-o', model, '--report', report];
     this.go.hidden = true;
-    const done = await this.identified.run([...words, '--json'], { files, begin: 'Identifying …' });
+    const done = await this.identified.run([...words, '--json'], { files, begin: sort === 'compare' ? 'Comparing …' : 'Identifying …' });
     if (turn !== this.turn) return;
-    this.go.hidden = Boolean(done);
+    this.go.hidden = Boolean(done) && !sort;
     this.options.mark(this.identified.error);
     if (done) this.showIdentified(done, words, report, model);
   }
 
   showIdentified(done, words, report, model) {
     const page = fileOf(done, report), bytes = fileOf(done, model);
-    const offers = [['Model (YAML)', 'model.yaml', bytes], ['Report (HTML)', 'report.html', page], ['Numbers (JSON)', 'identify.json', done.out]];
+    const offers = [['Model (YAML)', 'model.yaml', bytes], ['Report (HTML)', 'report.html', page], ['Numbers (JSON)', words[0] + '.json', done.out]];
     const beside = [downloadButtons(offers.filter(([, , content]) => content))];
     const after = [];
     if (bytes) {

@@ -63,9 +63,8 @@ static void show_model(const imk_identify_log *log, size_t channel, component c,
                          sqrt(variance_of(log, channel, c, factor[k])) / scale);
 }
 
-/* "line of 12.5 Hz" */
-static void name_part(const imk_identification *r, imk_identified_kind kind, int index, size_t size,
-                      char *text)
+void imki_part_name(const imk_identification *r, imk_identified_kind kind, int index, size_t size,
+                    char *text)
 {
     switch (kind) {
     case IMK_IDENTIFIED_GAUSS_MARKOV:
@@ -104,7 +103,7 @@ static void show_components(const imk_identify_log *log, size_t channel, double 
     }
     for (int kind = 0; kind < IMK_IDENTIFIED_KINDS; kind++)
         for (int i = 0; i < imk_identification_count(r, (imk_identified_kind)kind); i++) {
-            name_part(r, (imk_identified_kind)kind, i, sizeof name, name);
+            imki_part_name(r, (imk_identified_kind)kind, i, sizeof name, name);
             imki_begin_curve(figure, name, IMK_CURVE_DASHES, part_colors[kind]);
             show_model(log, channel, (component){IMK_NOISE_TERMS + kind, i}, scale, figure);
         }

@@ -48,6 +48,10 @@ void imki_channel_data(const imk_identify_log *log, size_t channel, imk_result *
 /* "channels", all of them. */
 void imki_channels_data(const imk_identify_log *log, imk_result *result);
 
+/* "line of 12.5 Hz" */
+void imki_part_name(const imk_identification *r, imk_identified_kind kind, int index, size_t size,
+                    char *text);
+
 /* A table for each kind of sensor: values with their intervals below them. */
 void imki_identify_tables(const imk_identify_log *log, imk_result *result);
 /* noise_changes_show.c: the verdict on changes of the noise; "noise_over_time", in the unit of the

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Identified terms as tables: a row for each term and channel. */
 #include "identify_show_internal.h"
+#include "verdict_concern_internal.h"
 
 #include "imukit/identify_plan.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 /* The channels of a kind, and the table that their terms go to. */
 typedef struct term_table {
@@ -116,6 +119,41 @@ static void term_rows(const term_table *t)
     }
 }
 
+static void value_row(const term_table *t, size_t channel, const char *name, double value,
+                      imk_unit unit)
+{
+    imk_table_row(t->table, "%s\t%s\t%.4g\t-\t%s", name,
+                  imk_channel_axis_name(imk_even_record_column(&t->log->record, channel)),
+                  value / unit.scale, unit.text);
+}
+
+/* Lines, resonances and filter are found, each at its own frequency, and have no intervals. */
+static void part_rows(const term_table *t)
+{
+    char name[96];
+    for (size_t k = 0; k < t->members; k++) {
+        const size_t channel = t->member[k];
+        const imk_identification *r = &t->log->result[channel];
+        for (int i = 0; i < r->sinusoid_count; i++) {
+            const double amplitude = r->sinusoid[i].amplitude;
+            imki_part_name(r, IMK_IDENTIFIED_SINUSOID, i, sizeof name, name);
+            value_row(t, channel, name, amplitude, imki_concern_unit(t->log, channel, amplitude));
+        }
+        for (int i = 0; i < r->resonance_count; i++) {
+            const double sigma = r->resonance[i].sigma;
+            imki_part_name(r, IMK_IDENTIFIED_RESONANCE, i, sizeof name, name);
+            snprintf(name + strlen(name), sizeof name - strlen(name), ", Q %.3g",
+                     r->resonance[i].q);
+            value_row(t, channel, name, sigma, imki_concern_unit(t->log, channel, sigma));
+        }
+        if (r->filter.bandwidth > 0)
+            value_row(t, channel, "output filter, bandwidth", r->filter.bandwidth,
+                      imk_unit_of("Hz"));
+        if (r->filter.damping > 0)
+            value_row(t, channel, "output filter, damping", r->filter.damping, imk_unit_of("1"));
+    }
+}
+
 static void range_cell(imk_table *table, double from, double to)
 {
     if (isfinite(from) && from <= to)
@@ -162,6 +200,7 @@ void imki_identify_tables(const imk_identify_log *log, imk_result *result)
         imk_table_row(t.table, "%s\taxis\tvalue ± 1 sigma\t%g %% interval\tunit",
                       imk_channel_kind_name(kind), 100 * log->settings.confidence);
         term_rows(&t);
+        part_rows(&t);
         imk_result_gap(result);
         if (log->origin == IMK_IDENTIFY_RECORD)
             show_records(&t, imk_channel_kind_name(kind), result);
