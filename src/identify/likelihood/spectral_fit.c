@@ -18,9 +18,12 @@
  *
  *   Its gradient in S is that of the likelihood without a, with the expected square E (c - a u)^2
  *   for c^2: a has the mean m = V X and the variance V = q/(1 + q W). */
+#include "base/logarithm_internal.h"
 #include "identify_internal.h"
+#include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -71,7 +74,7 @@ static double take_ends(const imki_fit *fit, const imki_bands *bands, imki_evalu
             x += end_product(fit, bands, parity, b) / e->spectrum[b];
         }
         const double part = 1 / (1 + q * w), variance = q * part, mean = variance * x;
-        gain += 0.5 * log(part) + 0.5 * mean * x;
+        gain += 0.5 * imk_ln(part) + 0.5 * mean * x;
         e->end_slope += part * (x * x * part - w);
         e->end_information += 2 * w * w * part * part;
         for (size_t b = 0; b < bands->count; b++)
@@ -86,7 +89,7 @@ static double evaluate(imki_fit *fit, const imki_bands *bands)
 {
     imki_evaluation *e = &fit->evaluation;
     const size_t count = bands->count;
-    double sum = 0, least = HUGE_VAL;
+    double sum = 0, least = HUGE_VAL, most = 0;
     add_spectrum(fit, count, e->spectrum);
     memcpy(e->power, bands->power, count * sizeof(double));
     for (size_t b = 0; fit->ramp != 0 && b < bands->singles; b++) {
@@ -94,11 +97,13 @@ static double evaluate(imki_fit *fit, const imki_bands *bands)
         e->power[b] = c * c * bands->dt;
     }
     for (size_t b = 0; b < count; b++) {
-        least = fmin(least, e->spectrum[b]);
-        sum += bands->degrees[b] * (log(e->spectrum[b]) + e->power[b] / e->spectrum[b]);
+        const double s = e->spectrum[b];
+        least = s < least ? s : least;
+        most = s > most ? s : most;
+        sum += bands->degrees[b] * (imki_ln_of_normal(s, 0) + e->power[b] / s);
     }
     e->log_likelihood = -HUGE_VAL;
-    if (least > 0 && sum == sum)
+    if (least >= DBL_MIN && most < HUGE_VAL && sum == sum)
         e->log_likelihood = -0.5 * sum + take_ends(fit, bands, e);
     return e->log_likelihood;
 }
