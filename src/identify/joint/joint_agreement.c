@@ -8,7 +8,6 @@
  * holds the record's own, so that the variance of the difference is that of the one less that of
  * the other. */
 #include "imukit/distributions.h"
-#include "imukit/elementary.h"
 #include "joint_internal.h"
 
 #include <math.h>
@@ -41,7 +40,7 @@ static double likelihood(const imki_fit *fit, const imki_bands *bands)
     double sum = 0;
     for (size_t b = 0; b < bands->count; b++) {
         const double s = imki_fit_spectrum(fit, b);
-        sum += bands->degrees[b] * (imk_ln(s) + bands->power[b] / s);
+        sum += bands->degrees[b] * imki_deviance(bands->power[b], s);
     }
     return -0.5 * sum;
 }

@@ -251,7 +251,7 @@ static double likelihood(const imki_joint_fit *j)
     double sum = 0;
     for (size_t b = 0; b < bands->count; b++) {
         const double s = imki_fit_spectrum(j->w->fit, b);
-        sum += bands->degrees[b] * (imk_ln(s) + bands->power[b] / s);
+        sum += bands->degrees[b] * imki_deviance(bands->power[b], s);
     }
     return -0.5 * sum;
 }

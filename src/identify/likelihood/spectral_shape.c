@@ -52,7 +52,7 @@ static double local_likelihood(const local_spectrum *w, double frequency, double
     double sum = 0;
     for (size_t b = 0; b < w->count; b++) {
         const double s = level + amount * shape[b];
-        sum += w->degrees[b] * (imk_ln(s) + w->power[b] / s);
+        sum += w->degrees[b] * imki_deviance(w->power[b], s);
     }
     *variance = amount;
     return -0.5 * sum;
