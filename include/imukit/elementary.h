@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file elementary.h
  *  Elementary functions whose results have the same bits everywhere: only + - * / sqrt and
- *  rounding, no fused operations, no libm. Used wherever the bytes of a log depend on them. */
+ *  rounding, no fused operations, no libm. Used wherever the bytes of a log or an estimate
+ *  of its noise depend on them. */
 #ifndef IMUKIT_ELEMENTARY_H
 #define IMUKIT_ELEMENTARY_H
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command and the module of the page, for tests: both do a verb with the same files and give
-// { code, out, err, files }, where `files` is a Map of what was written. The command uses the kernels
-// that a page has: those of other instruction sets add in another order.
+// { code, out, err, files }, where `files` is a Map of what was written. The command uses the best
+// kernels of the machine: they give the bits of those of a page.
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -42,7 +42,7 @@ export function byCommand(words, files = []) {
   const folder = mkdtempSync(join(tmpdir(), 'imukit-web-'));
   try {
     for (const [name, bytes] of files) writeFileSync(join(folder, name), bytes);
-    const environment = { ...process.env, NO_COLOR: '1', IMUKIT_ISA: 'scalar' };
+    const environment = { ...process.env, NO_COLOR: '1' };
     const start = performance.now();
     const done = spawnSync(imukit, words, { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 28, env: environment });
     const milliseconds = performance.now() - start;

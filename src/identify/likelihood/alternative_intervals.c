@@ -114,6 +114,7 @@ static void join_set(imki_work *w, imk_identification *result, double drop)
 {
     imki_fit *fit = w->fit;
     const unsigned others = others_of(fit, result), before = uncertain_of(result);
+    imki_fit_polish(fit, w->bands);
     for (int term = IMK_NOISE_WHITE; term <= IMK_NOISE_RANDOM_WALK; term++)
         join_strength(w, term, drop, &result->term[term]);
     join_ramp(fit, &result->term[IMK_NOISE_RAMP]);

@@ -130,6 +130,8 @@ void imki_fit_set_filter(imki_fit *fit, imk_low_pass filter, const imki_bands *b
 
 /* spectral_fit.c: all return the log-likelihood, and leave it in the fit. */
 double imki_fit_maximise(imki_fit *fit, const imki_bands *bands);
+/* From there to the top itself, as far as rounding allows: for what is reported. */
+double imki_fit_polish(imki_fit *fit, const imki_bands *bands);
 /* The same with one amount (or the ramp: index IMK_NOISE_RAMP when `ramp`) held at a value. */
 double imki_fit_profile(imki_fit *fit, const imki_bands *bands, int held, double value);
 /* Covariance of the active amounts, templates x templates, row-major; zero for the others. */

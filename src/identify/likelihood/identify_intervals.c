@@ -59,6 +59,7 @@ static void average_with_quantization(imki_work *w, imk_estimate *e)
     const double chosen = fit->log_likelihood;
     const bool on = !fit->active[IMK_NOISE_QUANTIZATION];
     imki_quantization_switch(w);
+    imki_fit_polish(fit, w->bands);
     const double behind = chosen - fit->log_likelihood, ahead = behind + (on ? needed : -needed);
     if (!(ahead < drop && behind < drop + 1)) /* far from the other, whose centre is outside */
         return;
@@ -74,6 +75,7 @@ static void store_interval(imki_work *w, imk_identification *result, int term, d
     imk_estimate *e = &result->term[term];
     const imki_amounts chosen = imki_fit_keep(w->fit);
     imki_intervals_free(w, term);
+    imki_fit_polish(w->fit, w->bands);
     const imki_amounts freed = imki_fit_keep(w->fit);
     interval_at(w, term == IMK_NOISE_RAMP ? IMKI_HELD_RAMP : term, drop, e);
     if (term == IMK_NOISE_WHITE) {
@@ -98,6 +100,7 @@ static void store_gauss_markov(imki_work *w, imk_identification *result, size_t 
     g->sigma = (imk_estimate){.present = true, .value = sqrt(chosen.amount[slot])};
     g->correlation_time = (imk_estimate){.present = true, .value = time};
     imki_intervals_free(w, IMK_NOISE_WHITE);
+    imki_fit_polish(w->fit, w->bands);
     double sigma, step;
     imki_interval_profile p = imki_interval_profile_at(w, (int)slot, drop, &sigma, &step);
     g->sigma.free_value = sigma;
@@ -157,6 +160,7 @@ static bool is_undetermined(const imk_estimate *e)
 void imki_identify_intervals(imki_work *w, imk_identification *result)
 {
     const double drop = 0.5 * imk_chi_square_quantile(w->settings->confidence, 1);
+    imki_fit_polish(w->fit, w->bands);
     store_values(w, result);
     imki_identify_level(w, result);
     for (int term = 0; term < IMK_NOISE_TERMS; term++)

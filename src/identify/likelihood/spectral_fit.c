@@ -383,6 +383,39 @@ void imki_fit_restore(imki_fit *fit, const imki_bands *bands, const imki_amounts
     fit->log_likelihood = kept->log_likelihood;
 }
 
+/* Steps by their own promise, which is known to far more digits than the gain of the likelihood:
+ * near the top they are not compared. Should they lead away from it, where terms can hardly be told
+ * apart, the fit stays where it was. */
+double imki_fit_polish(imki_fit *fit, const imki_bands *bands)
+{
+    enum { STEPS = 30 };
+    const double near = 1e-4,
+                 enough = 1e-20; /* of twice the likelihood: 1e-10 standard deviations */
+    const double falls = 1e-9;   /* more than by rounding */
+    const imki_amounts start = imki_fit_keep(fit);
+    const double before = evaluate(fit, bands);
+    double left = near;
+    for (int i = 0; i < STEPS && left > enough && left <= near; i++) {
+        double step[IMKI_TEMPLATES_MAX];
+        left = scoring_step(fit, bands, IMKI_HELD_NONE, step);
+        for (size_t j = 0; left <= near && j < fit->templates; j++)
+            fit->amount[j] = fmax(0, fit->amount[j] + step[j]);
+        evaluate(fit, bands);
+        if (fit->ramp_active) {
+            const double moved = best_ramp(bands, &fit->evaluation) - fit->ramp;
+            left = fmax(left, moved * moved * imki_fit_ramp_information(fit, bands));
+            fit->ramp += moved;
+            evaluate(fit, bands);
+        }
+    }
+    fit->log_likelihood = fit->evaluation.log_likelihood;
+    if (!(fit->log_likelihood >= before - falls)) {
+        imki_fit_restore(fit, bands, &start);
+        evaluate(fit, bands);
+    }
+    return fit->log_likelihood;
+}
+
 void imki_fit_copy(imki_fit *to, const imki_fit *from, const imki_bands *bands)
 {
     const imki_amounts kept = imki_fit_keep(from);
