@@ -58,7 +58,10 @@ foreach(target ${test_targets})
     SHARED_DIRECTORY="${PROJECT_SOURCE_DIR}/../shared")
 endforeach()
 # Optimised they take twice as long to compile, and no less to run: the time is spent in the libraries.
+# Except in the definitions of Allan variances, taken literally: 5.7 s without, 2 s with.
 target_compile_options(imukit-tests PRIVATE -O0)
+set_property(SOURCE ${PROJECT_SOURCE_DIR}/tests/identify/allan/test_allan_family.c
+             APPEND PROPERTY COMPILE_OPTIONS -O2)
 if(TARGET imukit-command)
   add_dependencies(imukit-tests imukit-command)
   target_compile_definitions(imukit-tests PRIVATE IMUKIT_COMMAND="$<TARGET_FILE:imukit-command>")
