@@ -27,6 +27,8 @@
 BUILD  ?= build
 PREFIX ?= /usr/local
 JOBS   ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
+# Beside each of a thousand compilations make runs a program that says so; ninja says it itself.
+export CMAKE_GENERATOR ?= $(if $(shell command -v ninja),Ninja,Unix Makefiles)
 
 # CMake runs a make of its own, which is not a part of this one.
 alone = env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL

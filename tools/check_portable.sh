@@ -34,7 +34,7 @@ for source in $programs; do
 done
 files=$(tools/core_files.sh; find src/jobs src/report -name '*.c')
 needed="/($(tools/needed_files.sh "$out"/*.o | paste -sd'|'))$"
-clang="clang --target=wasm32-wasi"
+clang="clang-19 --target=wasm32-wasi"
 tools/compile_core.sh "$out/wasm32" "$(grep -E "$needed" <<<"$files")" $clang -O2
 
 run=0
@@ -42,7 +42,7 @@ for source in $programs; do
     name=$(basename "$source" .c)
     gcc "$out/$name.o" \
         -Wl,--start-group "$build"/libimukit{,-physics,-io}.a -Wl,--end-group -lm -o "$out/$name"
-    clang --target=wasm32-wasi -std=c17 -O2 -Iinclude -ffp-contract=off -Wl,--stack-first \
+    $clang -std=c17 -O2 -Iinclude -ffp-contract=off -Wl,--stack-first \
         "$source" "$out"/wasm32/*.o -lm -o "$out/$name.wasm"
     IMUKIT_ISA=scalar "$out/$name" >"$out/$name.expected"
     node --no-warnings tools/run_wasm.mjs "$out/$name.wasm" >"$out/$name.said" ||

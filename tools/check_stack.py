@@ -60,11 +60,17 @@ def read_calls(path, graph, complaints):
             graph.calls.setdefault(caller, set()).add(callee)
 
 
-def read_addresses(path, objdump, graph):
+def listings(objdump, option, paths):
+    """What objdump says of each file."""
+    told = subprocess.run([objdump, option, *paths], capture_output=True, text=True, check=True)
+    parts = re.split(r"^(\S+): +file format .*$", told.stdout, flags=re.MULTILINE)
+    return dict(zip(parts[1::2], parts[2::2]))
+
+
+def read_addresses(path, symbols, relocations, graph):
     """Who holds whose address. A symbol of one file only gets the file's name in front."""
     unit = re.search(r'title: "([^"]+)"', path.with_suffix(".ci").read_text())[1]
-    symbols = subprocess.run([objdump, "-t", path], capture_output=True, text=True, check=True)
-    public = {line.split()[-1] for line in symbols.stdout.splitlines() if re.match(r"\w+ g", line)}
+    public = {line.split()[-1] for line in symbols.splitlines() if re.match(r"\w+ g", line)}
 
     def name_of(section_or_symbol):
         name = re.sub(r"^\.(text\.(unlikely|startup|exit|hot)|text|rodata|data\.rel\.ro(\.local)?|"
@@ -72,10 +78,9 @@ def read_addresses(path, objdump, graph):
         local = name in public or not (section_or_symbol.startswith(".") or name in own)
         return name if local else f"{unit}:{name}"
 
-    own = {line.split()[-1] for line in symbols.stdout.splitlines() if re.match(r"\w+ l", line)}
-    listing = subprocess.run([objdump, "-r", path], capture_output=True, text=True, check=True)
+    own = {line.split()[-1] for line in symbols.splitlines() if re.match(r"\w+ l", line)}
     holder = None
-    for line in listing.stdout.splitlines():
+    for line in relocations.splitlines():
         section = re.match(r"RELOCATION RECORDS FOR \[(\.(?:text|rodata|data)\S*)\]", line)
         if line.startswith("RELOCATION"):
             holder = name_of(section[1]) if section else None
@@ -107,8 +112,11 @@ class Types:
         for name, parameters in re.findall(r"\(\*(\w+)\)\(([^()]*)\)", text) + \
                 re.findall(r"typedef \w+ (\w+)\(([^()]*)\);", text):
             self.pointers[name].add(parameter_types(parameters))
+        variables = collections.defaultdict(set)
+        for name, variable in re.findall(r"\b(\w+)(?= \*?(?:const )?(\w+))", text):
+            variables[name].add(variable)
         for name in list(self.pointers):  # what has a named type
-            for variable in re.findall(rf"\b{name} \*?(?:const )?(\w+)\b", text):
+            for variable in variables[name]:
                 self.pointers[variable] |= self.pointers[name]
 
     def at(self, place):
@@ -229,9 +237,12 @@ def main():
         subprocess.run([ROOT / "tools/compile_cortex.sh"], check=True)
     objdump = sys.argv[2] if len(sys.argv) > 2 else "arm-none-eabi-objdump"
     graph, complaints = Graph(), []
-    for path in sorted(folder.glob("*.ci")):
+    paths = sorted(folder.glob("*.ci"))
+    objects = [str(path.with_suffix(".o")) for path in paths]
+    symbols, relocations = (listings(objdump, option, objects) for option in ("-t", "-r"))
+    for path, name in zip(paths, objects):
         read_calls(path, graph, complaints)
-        read_addresses(path.with_suffix(".o"), objdump, graph)
+        read_addresses(path, symbols[name], relocations[name], graph)
     depth = Depth(graph, Types(), complaints)
     public = sorted(declared() & graph.frame.keys())
     deepest = sorted((depth.of(name) for name in public), reverse=True)

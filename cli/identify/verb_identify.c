@@ -124,6 +124,10 @@ static void end_page(const identification *i, imk_result *result)
 {
     const char *model = i->options->output ? i->options->output : "model.yaml";
     const bool grades = imk_grade_possible(&i->model);
+    static const char *const flags[] = {"--json", "--twin", "--verbose", "--strict", NULL};
+    static const char *const ends[] = {"-o",     "--output", "--report", "--plot", "--seed",
+                                       "--into", "--name",   "--truth",  NULL};
+    char again[2000];
     imk_result_for(result, IMK_FOR_PAGE);
     if (i->model.gyro.present || i->model.accel.present)
         show_model(result, "Model file", &i->model);
@@ -134,11 +138,11 @@ static void end_page(const identification *i, imk_result *result)
                                    "%s%s%s"
                                    "imukit simulate %s --rate %gHz --duration 1h --seed 2 -o "
                                    "another.csv\n"
-                                   "imukit identify %s --into MODEL -o MODEL   # only the noise of "
+                                   "%s --into MODEL -o MODEL   # only the noise of "
                                    "an existing model",
                                    grades ? "imukit grade " : "", grades ? model : "",
                                    grades ? "\n" : "", model, 1 / i->shown.log->record.dt,
-                                   i->shown.name));
+                                   command_line_as("identify", flags, ends, sizeof again, again)));
 }
 
 static int identify_log(identification *i, const imk_executor *executor)

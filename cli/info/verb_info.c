@@ -29,17 +29,17 @@ static const option info_option_table[] = {
 /* The command to run next; NULL: none is sure to fit, or the log was a stream, which is gone. */
 static const char *next_command(const imk_info_log *info, const char *path, char *text, size_t size)
 {
-    static const char *const own[] = {"--full", "--json", NULL};
+    static const char *const own[] = {"--full", "--json", NULL}, *const none[] = {NULL};
     char line[2000];
     const imk_info_next next = info ? imk_info_log_next(info) : IMK_INFO_NEXT_NONE;
     if (command_is_stream(path))
         return NULL;
     if (next == IMK_INFO_NEXT_IDENTIFY)
         snprintf(text, size, "%s -o model.yaml",
-                 command_line_as("identify", own, sizeof line, line));
+                 command_line_as("identify", own, none, sizeof line, line));
     else if (next != IMK_INFO_NEXT_NONE)
         snprintf(text, size, "%s --procedure %s -o model.yaml",
-                 command_line_as("calibrate", own, sizeof line, line),
+                 command_line_as("calibrate", own, none, sizeof line, line),
                  next == IMK_INFO_NEXT_SIXPOSITION ? "sixposition" : "multiposition");
     else
         return NULL;

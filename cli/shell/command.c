@@ -58,15 +58,26 @@ const char *command_line(void)
     return line;
 }
 
-const char *command_line_as(const char *name, const char *const *without, size_t size, char *line)
+/* Is a word one of these, up to its "=" or its end? */
+static bool is_among(const char *const *list, const char *word, size_t length)
+{
+    for (; *list; list++)
+        if (strlen(*list) == length && strncmp(*list, word, length) == 0)
+            return true;
+    return false;
+}
+
+const char *command_line_as(const char *name, const char *const *flags, const char *const *options,
+                            size_t size, char *line)
 {
     snprintf(line, size, "imukit %s", name);
     for (int i = 2; i < kept_count; i++) {
-        bool skip = false;
-        for (const char *const *word = without; *word; word++)
-            skip = skip || strcmp(kept_arguments[i], *word) == 0;
-        if (!skip)
-            append_word(line, size, kept_arguments[i]);
+        const char *word = kept_arguments[i];
+        const size_t length = strcspn(word, "=");
+        if (is_among(options, word, length))
+            i += word[length] == '\0';
+        else if (!is_among(flags, word, strlen(word)))
+            append_word(line, size, word);
     }
     return line;
 }

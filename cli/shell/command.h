@@ -52,8 +52,10 @@ const char *command_verb(void);
 /* The command line as it can be typed again; kept by command_line_keep(). */
 void command_line_keep(int argument_count, char **arguments);
 const char *command_line(void);
-/* The same with another verb and without these flags (NULL behind the last). @return `line` */
-const char *command_line_as(const char *name, const char *const *without, size_t size, char *line);
+/* The same with another verb, without these flags and these options with their values (NULL behind
+ * the last). @return `line` */
+const char *command_line_as(const char *name, const char *const *flags, const char *const *options,
+                            size_t size, char *line);
 
 /* "imukit allan: <message>" on standard error. Return the exit code, for `return failed(…)`. */
 int command_failed(const char *format, ...) __attribute__((format(printf, 1, 2)));

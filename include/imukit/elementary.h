@@ -20,6 +20,10 @@ IMK_API double imk_expm1(double x);
 /** Natural logarithm. Error below 0.95 ulp; -infinity at 0, NaN below. */
 IMK_API double imk_ln(double x);
 
+/** Natural logarithm of 1 + x, accurate also for small x. Error below 2 ulp; -infinity at -1, NaN
+ *  below; -0 stays. */
+IMK_API double imk_ln1p(double x);
+
 /** Sine and cosine of x [rad]. Error below 0.85 ulp for |x| <= 1e5; up to 1e9 below 2 ulp or 1e-16,
  *  whichever is larger; up to 1e15 below 1e-15. NaN beyond and for infinities. */
 IMK_API double imk_sin(double x);

@@ -94,7 +94,7 @@ typedef struct imk_identification {
                                terms, lines, resonances and filter */
     double longest;         /**< longest tau compared with the record: a ninth of its length [s] */
     double resolution;      /**< smallest step between values [unit]; 0 when none is detected */
-    double log_likelihood;
+    double log_likelihood;  /**< of the spectrum, less that of one that equals each band's power */
     double dt;          /**< sample interval [s]; 0: not known, as of a table of Allan deviations */
     double rounding;    /**< white noise of rounding to these steps after the filter [unit of N]; 0
                            when none is detected: then the white noise holds it */

@@ -47,8 +47,8 @@ typedef struct imk_info_channel {
     double scatter; /**< root mean square deviation within a second or 16 rows */
     double lowest, highest;
     double step; /**< resolution: distance of neighbouring values; 0: none is seen */
-    /** Rows at the lowest, the highest value in runs of three and more, where values between them
-     * are many; 0: it is not clipped */
+    /** Rows at the lowest, the highest value, where three of them follow one another and values
+     * between the extremes are many; 0: it is not clipped */
     size_t clipped_low, clipped_high;
 } imk_info_channel;
 

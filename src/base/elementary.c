@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* exp, expm1, log, sin and cos from + - * / alone, so that they have the same bits everywhere.
+/* exp, expm1, log, log1p, sin and cos from + - * / alone, so that they have the same bits
+ * everywhere.
  *
  * Each reduces its argument exactly or to twice the precision, evaluates a minimax polynomial
  * (tests/reference/minimax_coefficients.py) for the small part of the result, and adds the large
@@ -9,6 +10,7 @@
  */
 #include "imukit/elementary.h"
 
+#include "logarithm_internal.h"
 #include "sine_internal.h"
 
 #include <float.h>
@@ -22,17 +24,6 @@
 
 #define EXPONENT_BIAS 1023
 #define FRACTION_BITS 52
-
-/* ln 2: the high part has 32 bits, so that its products with an exponent are exact. */
-static const double ln2_high = 0x1.62e42feep-1;
-static const double ln2_low = 0x1.a39ef35793c76p-33;
-
-static uint64_t bits_of(double x)
-{
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
 
 static double double_of(uint64_t bits)
 {
@@ -53,8 +44,8 @@ static double power_of_two(int n)
 static int reduced_exp(double x, imki_precise *result)
 {
     const double n = imki_nearest_integer(x * 1.4426950408889634);
-    const double high = x - n * ln2_high;
-    const double low = n * ln2_low;
+    const double high = x - n * imki_ln2_high;
+    const double low = n * imki_ln2_low;
     const double r = high - low;
     const double lost = (high - r) - low;
     double p = 2.092691294858863e-09;
@@ -106,15 +97,8 @@ double imk_expm1(double x)
     return sum.high + (sum.low + scale * reduced.low);
 }
 
-/* x = 2^n (1 + f), 1 + f in [sqrt 1/2, sqrt 2), s = f/(2 + f), h = f^2/2:
- *
- *     log(1 + f) = 2 atanh s = 2 s + 2 s^3 P(s^2) = f - (h - s (h + 2 s^2 P(s^2)))
- *
- * The last form holds f, which is exact, apart from what is rounded. */
 double imk_ln(double x)
 {
-    const uint64_t root_half = UINT64_C(0x3fe6a09e667f3bcd);
-    const uint64_t fraction = (UINT64_C(1) << FRACTION_BITS) - 1;
     if (isnan(x))
         return x + x;
     if (x < 0.0)
@@ -123,27 +107,17 @@ double imk_ln(double x)
         return -(double)INFINITY;
     if (isinf(x))
         return x;
-    int n = 0;
-    if (x < DBL_MIN) {
-        x *= 0x1p54;
-        n = -54;
-    }
-    const uint64_t offset = bits_of(x) - root_half + ((uint64_t)EXPONENT_BIAS << FRACTION_BITS);
-    n += (int)(offset >> FRACTION_BITS) - EXPONENT_BIAS;
-    const double f = double_of((offset & fraction) + root_half) - 1.0;
-    const double s = f / (2.0 + f);
-    const double z = s * s;
-    const double h = 0.5 * f * f;
-    double p = 2 * 0.07397973362269404;
-    p = p * z + 2 * 0.07657025427410083;
-    p = p * z + 2 * 0.09091782157294406;
-    p = p * z + 2 * 0.11111099286693019;
-    p = p * z + 2 * 0.1428571437119303;
-    p = p * z + 2 * 0.1999999999970734;
-    p = p * z + 2 * 0.3333333333333367;
-    const double tail = h - s * (h + z * p);
-    const imki_precise sum = imki_ordered_sum_of(n * ln2_high, f);
-    return sum.high + (sum.low + (n * ln2_low - tail));
+    return x < DBL_MIN ? imki_ln_of_normal(x * 0x1p54, -54.0) : imki_ln_of_normal(x, 0.0);
+}
+
+/* With 1 + x = u + e, log(1 + x) = log u + e/u + O(e^2). */
+double imk_ln1p(double x)
+{
+    if (fabs(x) < 0x1p-54) /* x^2/2 is less than a quarter ulp of x */
+        return x;
+    const imki_precise sum = imki_sum_of(1.0, x);
+    const double logarithm = imk_ln(sum.high);
+    return fabs(logarithm) < (double)INFINITY ? logarithm + sum.low / sum.high : logarithm;
 }
 
 /* x = q pi/2 + rest with |rest| <= pi/4; q mod 4 is returned. |x| <= 1e15. */

@@ -798,6 +798,8 @@ static const struct message {
     {"dead_band", "the input of {0u} is within the dead band of {3u}: the output does not follow "
                   "it"},
     {"not_followed", "the output ends at {1u}, the input is {0u}"},
+    {"scattered", "samples scatter by {4u}, too much to show that the output, {1u} at the end, "
+                  "follows the input of {0u}"},
     {"physics:temperature",
      "{0.4g} degC is outside the temperature range of this design, {1.4g} to {2.4g} degC"},
     {"physics:touched",

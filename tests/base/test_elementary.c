@@ -4,6 +4,7 @@
  * hold, so they serve as exact values. Limits are those of elementary.h. */
 #include "check.h"
 
+#include "base/distributions/gamma_internal.h"
 #include "base/sine_internal.h"
 #include "imukit/elementary.h"
 
@@ -174,6 +175,49 @@ static void log_at_its_ends(void **state)
         CHECK_BELOW(error_ulp(imk_ln(points[i]), logl((long double)points[i])), 0.95);
 }
 
+static double above_minus_one(double u, double v)
+{
+    return expm1(60.0 * u - 20.0) * (v < 0.5 ? 1.0 : 0.5);
+}
+
+static void log1p_is_accurate(void **state)
+{
+    (void)state;
+    check_function(imk_ln1p, log1pl, above_minus_one, 2.0, "log1p");
+    check_function(imk_ln1p, log1pl, around_zero, 2.0, "log1p");
+    check_function(imk_ln1p, log1pl, every_size, 2.0, "log1p");
+}
+
+static void log1p_at_its_ends(void **state)
+{
+    (void)state;
+    assert_true(imk_ln1p(0.0) == 0.0 && signbit(imk_ln1p(-0.0)));
+    assert_true(imk_ln1p(0x1p-1074) == 0x1p-1074 && imk_ln1p(-0x1p-60) == -0x1p-60);
+    assert_true(imk_ln1p(-1.0) == -(double)INFINITY && isnan(imk_ln1p(-1.5)));
+    assert_true(imk_ln1p((double)INFINITY) == (double)INFINITY && isnan(imk_ln1p((double)NAN)));
+    CHECK_BELOW(error_ulp(imk_ln1p(DBL_MAX), log1pl((long double)DBL_MAX)), 2.0);
+    CHECK_BELOW(error_ulp(imk_ln1p(-0x1.fffffffffffffp-1), log1pl(-0x1.fffffffffffffp-1L)), 2.0);
+}
+
+static double in_the_tail(double u, double v)
+{
+    (void)v;
+    return 32.0 * u - 6.0;
+}
+
+/* Beyond 26.5 the results are subnormal, and rounded twice. */
+static void error_functions_are_accurate(void **state)
+{
+    (void)state;
+    check_function(imki_erf, erfl, around_zero, 2.5, "erf");
+    check_function(imki_erf, erfl, every_size, 2.5, "erf");
+    check_function(imki_erfc, erfcl, around_zero, 4.0, "erfc");
+    check_function(imki_erfc, erfcl, in_the_tail, 4.0, "erfc");
+    assert_true(imki_erfc(30.0) == 0.0 && imki_erfc(-30.0) == 2.0 && imki_erfc(0.0) == 1.0);
+    assert_true(imki_erfc((double)INFINITY) == 0.0 && imki_erf(-(double)INFINITY) == -1.0);
+    assert_true(isnan(imki_erf((double)NAN)) && isnan(imki_erfc((double)NAN)));
+}
+
 static double few_turns(double u, double v)
 {
     (void)v;
@@ -258,6 +302,9 @@ static void bits_never_change(void **state)
     assert_int_equal(fingerprint(imk_exp, -746.0, 0.0728), UINT64_C(0x01d3d7c56d737b3b));
     assert_int_equal(fingerprint(imk_expm1, -41.0, 0.0043), UINT64_C(0x795d0dadf90d6945));
     assert_int_equal(fingerprint(imk_ln, 1e-3, 1.7e-3), UINT64_C(0x46b6a5e60513aa19));
+    assert_int_equal(fingerprint(imk_ln1p, -0.99, 1.7e-3), UINT64_C(0xe19aa3178cca19a5));
+    assert_int_equal(fingerprint(imki_erf, -6.0, 6e-4), UINT64_C(0x5eefa5a424cc2345));
+    assert_int_equal(fingerprint(imki_erfc, -6.0, 1.7e-3), UINT64_C(0x179d4f6cb4ee8319));
     assert_int_equal(fingerprint(imk_sin, -2e3, 0.21), UINT64_C(0xd647e9ec9174d7c1));
     assert_int_equal(fingerprint(imk_cos, -2e7, 2e3 + 0.1), UINT64_C(0xf8888a8a9030c2a9));
 }
@@ -307,6 +354,9 @@ int main(void)
         cmocka_unit_test(expm1_at_its_ends),
         cmocka_unit_test(log_is_accurate),
         cmocka_unit_test(log_at_its_ends),
+        cmocka_unit_test(log1p_is_accurate),
+        cmocka_unit_test(log1p_at_its_ends),
+        cmocka_unit_test(error_functions_are_accurate),
         cmocka_unit_test(sin_and_cos_are_accurate),
         cmocka_unit_test(sin_and_cos_of_large_arguments),
         cmocka_unit_test(sin_and_cos_at_their_ends),

@@ -441,6 +441,21 @@ static void test_codes_in_all_columns(void **state)
     sweep();
 }
 
+/* Movement at both ends is not one in between; what comes from the reading is a sentence among the
+ * others of the page. */
+static void test_ends(void **state)
+{
+    (void)state;
+    make_log("if (t < 10 || t > 892) { $2 += 40 * sin(NR / 3); $3 += 30 * cos(NR / 2) } if (NR == "
+             "9000) $1 = t - 0.05");
+    identify_log("--report p.html");
+    check_contains(out, "Not usable: the sensor was moved, or had not settled, at times between ",
+                   out);
+    assert_int_equal(run("cat p.html"), 0);
+    check_contains(out, "1 row whose time does not increase: left out. ", "page");
+    sweep();
+}
+
 /* What is suggested next succeeds: white noise alone says nothing of a grade. */
 static void next_lines_succeed(void **state)
 {
@@ -453,12 +468,20 @@ static void next_lines_succeed(void **state)
     check_contains(out, "Next: imukit convert w.yaml filter.yaml --to filter --rate 100Hz", out);
     assert_int_equal(run("$I convert w.yaml filter.yaml --to filter --rate 100Hz"), 0);
     assert_int_equal(run("$I grade w.yaml"), 1);
+    /* What a page suggests reads the log as it was read. */
+    assert_int_equal(run("sed '1s/ .[^,]*//g' w.csv > bare.csv && $I identify bare.csv "
+                         "--time-unit s --gyro-unit=deg/s -o w.yaml --report p.html --json && grep "
+                         "-o 'imukit identify .* --into MODEL' p.html"),
+                     0);
+    check_contains(out, "imukit identify bare.csv --time-unit s --gyro-unit=deg/s --into MODEL",
+                   "page");
     sweep();
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(next_lines_succeed),
+                                       cmocka_unit_test(test_ends),
                                        cmocka_unit_test(test_sound),
                                        cmocka_unit_test(test_step),
                                        cmocka_unit_test(test_json),

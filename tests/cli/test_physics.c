@@ -241,6 +241,19 @@ static void test_levels_and_warnings(void **state)
     sweep();
 }
 
+/* Twenty microseconds of pulses do not show a rate. */
+static void test_scatter(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I physics fibre_optic --rate '10 deg/s' --output-rate 50MHz -d 20us -o "
+                         "a.csv"),
+                     0);
+    check_contains(err, "too much to show that the output", err);
+    check_contains(out, "Usable with care: samples scatter by ", "sentence");
+    assert_null(strstr(out, "the output follows"));
+    sweep();
+}
+
 /* The numbers are those of test_suspended_touch_down.c: the limit, and v and t by energy within 1
  * %.
  */
@@ -748,6 +761,7 @@ int main(void)
         cmocka_unit_test(test_told_temperature),
         cmocka_unit_test(test_levels_and_warnings),
         cmocka_unit_test(test_touch_down),
+        cmocka_unit_test(test_scatter),
         cmocka_unit_test(test_reduce),
         cmocka_unit_test(test_derived),
         cmocka_unit_test(test_sweep),

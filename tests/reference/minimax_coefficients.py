@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Minimax coefficients of the polynomials in src/base (elementary.c, normals_kernel.h).
+"""Minimax coefficients of the polynomials in src/base (elementary.c, normals_kernel.h,
+distributions/error_function.c).
 
 Remez exchange in 60-digit decimal arithmetic, standard library only. Prints each polynomial's
 coefficients, lowest power first, as decimals that read back to the same double, and its largest
@@ -115,6 +116,26 @@ def main():
     half_ln2 = D(2).ln() / 2 * (1 + D(10) ** -6)
     show("exp: 1 + r + r^2 P(r)",
          *minimax(exp_tail, lambda r: r * r, -half_ln2, half_ln2, 10))
+
+    def odd_part(x):                  # e^(x^2) erf(x) / x
+        return 2 / pi.sqrt() * series(D(1), lambda k: D(2) / (2 * k + 1), x * x)
+
+    def tail(t):                      # e^(x^2) erfc(x) (1 + 2 x), x = 4 (1 + t)/(1 - t)
+        x = 4 * (1 + t) / (1 - t)
+        if x < 2:
+            return ((x * x).exp() - x * odd_part(x)) * (1 + 2 * x)
+        fraction = x                  # [ABRAMOWITZ1964, 7.1.14]
+        for k in range(900, 0, -1):
+            fraction = x + D(k) / 2 / fraction
+        return (1 + 2 * x) / (pi.sqrt() * fraction)
+
+    def centre(z):                    # erf(x)/x, z = x^2
+        return (-z).exp() * odd_part(z.sqrt())
+
+    print("error function: all relative")
+    show("erf = x P(x^2)", *minimax(centre, lambda z: 1 / centre(z), D(0), D(1) / 4, 9, points=200))
+    show("erfc = e^(-x^2)/(1 + 2 x) R(t)", *minimax(tail, lambda t: 1 / tail(t), D(-7) / 9,
+                                                    D(24) / 32, 22, points=300))
 
 
 if __name__ == "__main__":

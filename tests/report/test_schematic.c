@@ -451,6 +451,32 @@ static void test_quantities(void **state)
     for_each(check_quantities);
 }
 
+/* A spring or a torquer holds the gimbal against the gyroscopic torque, and its torque turns the
+ * wheel after the case. */
+static void check_held(const char *name, const char *signal, double momentum)
+{
+    const imk_schematic *s = imk_schematic_of(imk_instrument_find(name));
+    const imk_exposure exposure = {.angular_rate = {0.1}, .temperature = 293.15};
+    double outputs[IMK_INSTRUMENT_OUTPUTS_MAX] = {0}, signals[IMK_INSTRUMENT_SIGNALS_MAX] = {0};
+    const imk_schematic_moment moment = {
+        .exposure = &exposure, .outputs = outputs, .signals = signals};
+    static _Alignas(64) unsigned char design[DESIGN_MAX];
+    s->instrument->set_default(design);
+    for (size_t i = 0; i < s->instrument->signal_count; i++)
+        if (strcmp(s->instrument->signals[i].name, signal) == 0)
+            signals[i] = momentum * 0.1;
+    CHECK_RELATIVE(imk_schematic_quantity_value(s, design, 1, &moment), momentum * 0.1, 1e-12);
+    CHECK_RELATIVE(imk_schematic_quantity_value(s, design, 2, &moment), -momentum * 0.1, 1e-12);
+    CHECK_RELATIVE(imk_schematic_quantity_value(s, design, 3, &moment), 0.1, 1e-12);
+}
+
+static void test_held_wheels(void **state)
+{
+    (void)state;
+    check_held("rate_gyro", "spring_torque", 0.001);
+    check_held("rate_integrating_gyro", "torquer_torque", 0.04);
+}
+
 static void test_drawings(void **state)
 {
     (void)state;
@@ -478,10 +504,11 @@ static void test_animations(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_parts),    cmocka_unit_test(test_quantities),
-        cmocka_unit_test(test_drawings), cmocka_unit_test(test_sliders),
-        cmocka_unit_test(test_extremes), cmocka_unit_test(test_animations),
-        cmocka_unit_test(test_values),   cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_parts),       cmocka_unit_test(test_quantities),
+        cmocka_unit_test(test_held_wheels), cmocka_unit_test(test_drawings),
+        cmocka_unit_test(test_sliders),     cmocka_unit_test(test_extremes),
+        cmocka_unit_test(test_animations),  cmocka_unit_test(test_values),
+        cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,7 +14,7 @@ function showHeading(root) {
     svg('circle', { class: 'ring', r: 80 }), letters, needle);
   const chart = new StripChart({ label: 'Heading against time', unit: 'deg', names: ['heading', 'truth'], seconds: 20 });
   const problem = element('p', { class: 'problem', role: 'alert' });
-  const said = element('output', { class: 'number' }), clock = element('output', { class: 'number' });
+  const said = element('output', { class: 'number' }, '0.00'), clock = element('output', { class: 'number' }, '0.0');
   const play = element('button', { type: 'button', class: 'main', onclick: () => (now.playing ? pause() : start()) }, 'Play');
   const toggle = element('button', { type: 'button', 'aria-pressed': 'true', onclick: () => change(() => (now.on = !now.on)) }, 'Bias');
   const place = element('div', {});

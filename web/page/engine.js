@@ -101,7 +101,10 @@ class Cancelled extends Error {
 function unpackModule() {
   const worker = new Worker(workerAddress());
   const answer = new Promise((resolve, reject) => {
-    worker.onmessage = ({ data }) => (data.module ? resolve(data.module) : reject(new Error(data.failed)));
+    worker.onmessage = ({ data }) => (data.module ? resolve(data.module)
+      : reject(new Error(data.kind === 'CompileError'
+        ? 'this browser does not know the vectors (SIMD) of WebAssembly, which others have since 2023; a newer one runs this page'
+        : data.failed)));
     whenStopped(worker, reject);
   });
   worker.postMessage({ packed: document.getElementById('module').textContent });

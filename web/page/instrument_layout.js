@@ -135,7 +135,7 @@ function makeDesign(view) {
       return problem;
     };
     const label = field.path.replace(/[._]/g, ' ');
-    const common = { label, text: field.value, help: field.help, change };
+    const common = { label, text: tidyNumbers(field.value), help: field.help, change };
     const control = field.choices ? makeChoice({ ...common, choices: field.choices })
       : slider ? makeSlider({ ...common, ...slider, unit: slider.unit || field.unit })
         : makeField(common);
@@ -146,7 +146,7 @@ function makeDesign(view) {
   const reset = element('button', { type: 'button', onclick: async () => {
     view.design.clear();
     view.renew(await askLive('change', view.designFile()));
-    about.fields.forEach(({ path, value }) => put(path, value));
+    about.fields.forEach(({ path, value }) => put(path, tidyNumbers(value)));
   } }, 'Default design');
   return element('fieldset', {}, element('legend', {}, 'Design'),
     main.map((slider) => control(fieldOf(slider.path), slider)), reset,

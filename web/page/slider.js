@@ -12,8 +12,13 @@ function threeDigits(value) {
 function shownNumber(value) {
   if (!Number.isFinite(value)) return '–';
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e6)) return value.toExponential(3).replace('e+', 'e').replace('-', '−');
+  if (size !== 0 && (size < 1e-3 || size >= 1e6)) return value.toExponential(3).replace('e+', 'e').replace(/-/g, '−');
   return (size >= 1e4 ? value.toFixed(0) : value.toPrecision(4)).replace('-', '−');
+}
+
+/** A text without the last digits of doubles: "29.999999999999993 nm" is 30 nm. */
+function tidyNumbers(text) {
+  return text.replace(/\d[\d.]{13,}(e[-+]?\d+)?/gi, (number) => String(Number(Number(number).toPrecision(12))));
 }
 
 let sliderCount = 0;

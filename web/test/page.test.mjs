@@ -171,6 +171,26 @@ for (const [name, content] of [['words.csv', 'this is no log\n'], ['empty.csv', 
     });
   });
 
+test('one log that cannot be read does not hide the others', async () => {
+  await withPage('#log', {}, async (page) => {
+    await page.choose('#log-files-input', written('words.csv', 'this is no log\n'), still('still.csv'));
+    await page.until(`document.querySelector('#log-info .summary')`);
+    await page.until(nothingWaits);
+    const text = await page.value(`document.querySelector('#log-info').innerText`);
+    for (const part of ['words.csv', 'Usable for identify']) assert.ok(text.includes(part), text);
+  });
+});
+
+test('a log is sent to the command where only the page cannot read it', async () => {
+  for (const [name, content, next] of [['log.h5', Buffer.from('\x89HDF\r\n\x1a\n' + '\0'.repeat(600), 'latin1'), 'imukit convert log.h5 log.npz'],
+    ['picture.csv', Buffer.from('\x89PNG\r\n\x1a\n\0\0', 'latin1'), '']])
+    await withPage('#log', {}, async (page) => {
+      await page.choose('#log-files-input', written(name, content));
+      await page.until(`document.querySelector('#log-info [data-part="error"]:not([hidden])')`);
+      assert.equal(await page.value(`[...document.querySelectorAll('#log-info [data-part="error"] pre')].map((one) => one.textContent).join()`), next);
+    });
+});
+
 test('what runs can be cancelled, and begun anew', async () => {
   const path = logOf('long.npy', 'AHRS', '--rate', '100Hz', '--duration', '3h', '--seed', '6');
   await withPage('#log', {}, async (page) => {

@@ -3,6 +3,7 @@
  *
  *     l[i][j] = (a[i][j] - sum_{k<j} l[i][k] l[j][k]) / l[j][j]
  *     l[i][i] = sqrt(a[i][i] - sum_{k<i} l[i][k]^2)                    [GOLUB2013, sec. 4.2] */
+#include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
 
 #include "vector_internal.h"
@@ -70,6 +71,6 @@ double imk_cholesky_log_determinant(size_t n, const double *l)
 {
     double sum = 0.0;
     for (size_t i = 0; i < n; i++)
-        sum += log(l[i * n + i]);
+        sum += imk_ln(l[i * n + i]);
     return 2.0 * sum;
 }

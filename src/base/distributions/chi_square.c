@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Chi-square distribution: P(degrees/2, x/2), and its quantile by Newton's method in logarithms. */
 #include "imukit/distributions.h"
+#include "imukit/elementary.h"
 
 #include "gamma_internal.h"
 
@@ -19,7 +20,7 @@ static double first_guess(double probability, double a)
     const double z = imk_normal_quantile(probability);
     const double ninth = 1.0 / (9.0 * a);
     const double cube_root = 1.0 - ninth + z * sqrt(ninth);
-    const double series = exp((log(probability) + imk_log_gamma(a + 1.0)) / a);
+    const double series = imk_exp((imk_ln(probability) + imk_log_gamma(a + 1.0)) / a);
     /* The next term of the series is -x a/(a+1): it may be left out while x is small. */
     if (series < 0.2 * (a + 1.0) || !(cube_root > 0.1))
         return series;
@@ -45,14 +46,14 @@ double imk_chi_square_quantile(double probability, double degrees)
         const double tail = upper_half ? upper : lower;
         /* d log P / d log x = x^a e^-x / (Gamma(a) P), and the negative for Q. */
         const double slope = imki_gamma_power(a, x) * a / tail;
-        double step = log(tail / target) / slope;
+        double step = imk_ln(tail / target) / slope;
         step = upper_half ? step : -step;
         if (!(fabs(step) <= longest_step))
             step = copysign(longest_step, step);
         /* Converged: the steps no longer shrink, being rounding alone. */
         if (fabs(step) < 1e-10 && fabs(step) >= 0.5 * last)
             break;
-        x *= exp(step);
+        x *= imk_exp(step);
         last = fabs(step);
         if (last < 1e-16)
             break;

@@ -8,6 +8,7 @@
  *
  * libm's lgamma() would write the global signgam. */
 #include "imukit/distributions.h"
+#include "imukit/elementary.h"
 
 #include "gamma_internal.h"
 
@@ -37,7 +38,7 @@ double imki_log_gamma_one_plus(double x)
 {
     if (x > 0.5)
         return log_gamma_two_plus(x - 1.0);
-    return log_gamma_two_plus(x) - log1p(x);
+    return log_gamma_two_plus(x) - imk_ln1p(x);
 }
 
 double imki_stirling_error(double x)
@@ -58,17 +59,17 @@ double imk_log_gamma(double x)
     if (!(x > 0.0))
         return (double)NAN;
     if (x < 0.5)
-        return imki_log_gamma_one_plus(x) - log(x);
+        return imki_log_gamma_one_plus(x) - imk_ln(x);
     if (x <= 2.5)
         return imki_log_gamma_one_plus(x - 1.0);
     if (x >= 10.0) {
         const double series = x < 1e17 ? half_log_two_pi - x + imki_stirling_error(x) : -x;
-        return (x - 0.5) * log(x) + series;
+        return (x - 0.5) * imk_ln(x) + series;
     }
     double product = 1.0;
     while (x > 2.5) {
         x -= 1.0;
         product *= x;
     }
-    return log_gamma_two_plus(x - 2.0) + log(product);
+    return log_gamma_two_plus(x - 2.0) + imk_ln(product);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Parts of the gamma function that the incomplete gamma functions and quantiles share. */
+/* Parts of the gamma function that the incomplete gamma functions and quantiles share, and the
+ * error function. */
 #ifndef IMUKIT_GAMMA_INTERNAL_H
 #define IMUKIT_GAMMA_INTERNAL_H
 
@@ -14,6 +15,10 @@ double imki_log_deficit(double mu);
 
 /** x^a e^{-x} / Gamma(a + 1), a > 0, x > 0. */
 double imki_gamma_power(double a, double x);
+
+/** 2/sqrt(pi) int_0^x e^{-t^2} dt, error below 2.5 ulp, and 1 less it, below 4 ulp; NaN stays. */
+double imki_erf(double x);
+double imki_erfc(double x);
 
 /** P(a, x) and Q(a, x) together. */
 void imki_gamma_both(double a, double x, double *lower, double *upper);

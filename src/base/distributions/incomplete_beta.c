@@ -7,6 +7,7 @@
  * fast; and what follows from it: the F distribution, and Student's, whose square is F with one
  * degree of freedom above. */
 #include "imukit/distributions.h"
+#include "imukit/elementary.h"
 
 #include "gamma_internal.h"
 
@@ -24,16 +25,17 @@ static double beta_power(double a, double b, double x, double y)
         const double small = a < b ? a : b, large = a < b ? b : a;
         double gammas = imk_log_gamma(large + small) - imk_log_gamma(large);
         if (large >= 10.0) /* the two would cancel */
-            gammas = small * log(large) - (large + small) * imki_log_deficit(small / large) +
-                     (large + small) * (small / large) - small - 0.5 * log1p(small / large) +
+            gammas = small * imk_ln(large) - (large + small) * imki_log_deficit(small / large) +
+                     (large + small) * (small / large) - small - 0.5 * imk_ln1p(small / large) +
                      imki_stirling_error(large + small) - imki_stirling_error(large);
-        const double log_x = x < 0.5 ? log(x) : log1p(-y), log_y = y < 0.5 ? log(y) : log1p(-x);
-        return exp(a * log_x + b * log_y + gammas - imk_log_gamma(small));
+        const double log_x = x < 0.5 ? imk_ln(x) : imk_ln1p(-y),
+                     log_y = y < 0.5 ? imk_ln(y) : imk_ln1p(-x);
+        return imk_exp(a * log_x + b * log_y + gammas - imk_log_gamma(small));
     }
     const double excess = (x * b - y * a);
     return sqrt(a * b / (two_pi * (a + b))) *
-           exp(-a * imki_log_deficit(excess / a) - b * imki_log_deficit(-excess / b) +
-               imki_stirling_error(a + b) - imki_stirling_error(a) - imki_stirling_error(b));
+           imk_exp(-a * imki_log_deficit(excess / a) - b * imki_log_deficit(-excess / b) +
+                   imki_stirling_error(a + b) - imki_stirling_error(a) - imki_stirling_error(b));
 }
 
 /* The even part of the continued fraction,
@@ -137,13 +139,13 @@ double imk_f_upper_quantile(double probability, double numerator, double denomin
             f_both(f, numerator, denominator, &lower, &upper, &power);
         }
         const double tail = from_above ? upper : lower;
-        double step = log(tail / target) * tail / power;
+        double step = imk_ln(tail / target) * tail / power;
         step = from_above ? step : -step;
         if (!(fabs(step) <= 3.0))
             step = copysign(3.0, step);
         if (fabs(step) < 1e-10 && fabs(step) >= 0.5 * last)
             break; /* steps no longer shrink: rounding alone */
-        f *= exp(step);
+        f *= imk_exp(step);
         last = fabs(step);
         if (last < 1e-16)
             break;

@@ -10,6 +10,7 @@
  *   small a and x       Q = 1 - x^a/Gamma(a+1) (1 - …) without cancellation    [GAUTSCHI1979]
  *   otherwise           Q by Legendre's continued fraction            [ABRAMOWITZ1964, 6.5.31] */
 #include "imukit/distributions.h"
+#include "imukit/elementary.h"
 
 #include "gamma_internal.h"
 
@@ -20,7 +21,7 @@
 double imki_log_deficit(double mu)
 {
     if (!(fabs(mu) < 0.5))
-        return mu - log1p(mu);
+        return mu - imk_ln1p(mu);
     const double t = mu / (2.0 + mu);
     const double square = t * t; /* < 1/9: 17 terms reach 1e-17 */
     double sum = 0.0;
@@ -33,10 +34,10 @@ double imki_gamma_power(double a, double x)
 {
     const double two_pi = 6.28318530717958647693;
     if (a < 10.0)
-        return exp(a * log(x) - x - imk_log_gamma(a + 1.0));
+        return imk_exp(a * imk_ln(x) - x - imk_log_gamma(a + 1.0));
     /* Without the large logarithms that would cancel: a^a e^-a sqrt(2 pi a)/Gamma(a + 1) is close
      * to 1 and x^a e^{a-x} / a^a is e^{-a (mu - log(1 + mu))}, mu = x/a - 1. */
-    return exp(-a * imki_log_deficit((x - a) / a) - imki_stirling_error(a)) / sqrt(two_pi * a);
+    return imk_exp(-a * imki_log_deficit((x - a) / a) - imki_stirling_error(a)) / sqrt(two_pi * a);
 }
 
 /* P for x < a + 1, by terms that fall from the start. */
@@ -75,13 +76,13 @@ static double upper_fraction(double a, double x)
  *     1 - x^a/Gamma(1+a)  +  x^a/Gamma(1+a) (a x/(a+1) - a x^2/(2! (a+2)) + …) */
 static double upper_small(double a, double x)
 {
-    const double exponent = a * log(x) - imki_log_gamma_one_plus(a);
+    const double exponent = a * imk_ln(x) - imki_log_gamma_one_plus(a);
     double power = x, sum = x / (a + 1.0);
     for (double n = 2.0; fabs(power) > sum * 1e-17; n += 1.0) {
         power *= -x / n;
         sum += power / (a + n);
     }
-    return -expm1(exponent) + exp(exponent) * a * sum;
+    return -imk_expm1(exponent) + imk_exp(exponent) * a * sum;
 }
 
 /* Temme's uniform expansion, with eta^2/2 = lambda - 1 - log lambda, lambda = x/a:
@@ -135,10 +136,10 @@ static void temme(double a, double mu, double *lower, double *upper)
         beta[n - 1] = d[n] + (n + 1) * beta[n + 1] / a;
         sum = sum * eta + beta[n - 1];
     }
-    const double rest = exp(-a * half_square) / sqrt(two_pi * a) * sum / (1.0 + beta[1] / a);
+    const double rest = imk_exp(-a * half_square) / sqrt(two_pi * a) * sum / (1.0 + beta[1] / a);
     const double y = eta * sqrt(0.5 * a);
-    *upper = 0.5 * erfc(y) + rest;
-    *lower = 0.5 * erfc(-y) - rest;
+    *upper = 0.5 * imki_erfc(y) + rest;
+    *lower = 0.5 * imki_erfc(-y) - rest;
 }
 
 void imki_gamma_both(double a, double x, double *lower, double *upper)

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Standard normal distribution:  Phi(x) = erfc(-x/sqrt 2)/2, and its inverse. */
 #include "imukit/distributions.h"
+#include "imukit/elementary.h"
+
+#include "gamma_internal.h"
 
 #include <math.h>
 
@@ -10,7 +13,7 @@ static double normal_density(double x)
     /* x^2/2 is split so that its rounding does not spoil the tail: the rest is below ulp(x^2/2). */
     const double square = x * x;
     const double rest = fma(x, x, -square);
-    return one_over_root_two_pi * exp(-0.5 * square) * (1.0 - 0.5 * rest);
+    return one_over_root_two_pi * imk_exp(-0.5 * square) * (1.0 - 0.5 * rest);
 }
 
 double imk_normal_probability(double x)
@@ -26,20 +29,20 @@ double imk_normal_probability(double x)
     if (!(fabs(t) < 28.0))
         return x > 0.0 ? 1.0 : 0.0;
     const double h = fma(-x, high, -t) - x * low;
-    return 0.5 * (erfc(t) - two_over_root_pi * exp(-t * t) * h);
+    return 0.5 * (imki_erfc(t) - two_over_root_pi * imk_exp(-t * t) * h);
 }
 
 /* Phi(x) - 1/2 for moderate x, relative to itself. */
 static double central_probability(double x)
 {
-    return 0.5 * erf(x * 0.70710678118654752440);
+    return 0.5 * imki_erf(x * 0.70710678118654752440);
 }
 
 /* Quantile for 0 < p <= 1/2, by Halley's iteration from the rational approximation
  * [ABRAMOWITZ1964, 26.2.23], whose error of 4.5e-4 the first two steps take below 1e-16. */
 static double lower_quantile(double p)
 {
-    const double t = sqrt(-2.0 * log(p));
+    const double t = sqrt(-2.0 * imk_ln(p));
     double x = (2.515517 + t * (0.802853 + t * 0.010328)) /
                    (1.0 + t * (1.432788 + t * (0.189269 + t * 0.001308))) -
                t;

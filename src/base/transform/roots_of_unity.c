@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Roots of unity e^{-2 pi i k/n} to the last bit or so. The angle is reduced to the first octant in
  * integers, so its rounding error is that of an angle below pi/4, not of one near 2 pi. */
+#include "base/sine_internal.h"
 #include "fourier_internal.h"
-
-#include <math.h>
 
 #define PI 3.14159265358979323846
 
@@ -15,8 +14,8 @@ void imki_root(uint64_t k, uint64_t n, double *re, double *im)
     const uint64_t rest = eighths % n;
     const bool mirrored = octant & 1;
     const double part = (double)(mirrored ? n - rest : rest) / (double)n;
-    const double c = cos(0.25 * PI * part);
-    const double s = sin(0.25 * PI * part);
+    double c, s;
+    imki_sine_and_cosine(0.25 * PI * part, &s, &c);
     /* Cosine and sine of the whole angle, octant by octant: an odd octant is counted back from the
      * next quarter turn. */
     switch ((octant + 1) / 2 % 4) {

@@ -185,12 +185,13 @@ static size_t name_character(const reader *r)
     return length;
 }
 
-/* Read a name, with µ (both code points) as u and degree signs as deg. */
+/* Read a name, with µ (both code points) as u and degree signs as deg; both signs also as the
+ * single bytes that editors of Windows write. */
 static bool read_name(reader *r, char name[IMKI_UNIT_NAME_SIZE])
 {
-    static const char *const spellings[][2] = {{"µ", "u"},      {"μ", "u"},    {"°", "deg"},
-                                               {"º", "deg"},    {"℃", "degC"}, {"″", "arcsec"},
-                                               {"′", "arcmin"}, {"Ω", "ohm"},  {"Ω", "ohm"}};
+    static const char *const spellings[][2] = {
+        {"µ", "u"},      {"μ", "u"},   {"°", "deg"}, {"º", "deg"},  {"℃", "degC"},  {"″", "arcsec"},
+        {"′", "arcmin"}, {"Ω", "ohm"}, {"Ω", "ohm"}, {"\xb5", "u"}, {"\xb0", "deg"}};
     size_t length = 0;
     for (size_t bytes; r->at < r->end && (bytes = name_character(r)) > 0; r->at += bytes) {
         const char *source = r->at;
@@ -315,6 +316,19 @@ static bool read_product(reader *r, product *result)
     }
 }
 
+/* The text of a unit; the single bytes that read_name() takes become UTF-8. */
+static void put_text(const char *begin, const char *end, size_t size, char *text)
+{
+    size_t length = 0;
+    for (const char *at = begin; at < end && length + 1 < size; at++) {
+        const bool is_sign = *at == '\xb0' || *at == '\xb5';
+        const bool is_alone = at == begin || ((unsigned char)at[-1] & 0x80) == 0;
+        if (is_sign && is_alone && length + 2 < size)
+            text[length++] = '\xc2';
+        text[length++] = *at;
+    }
+}
+
 imk_status imk_unit_parse(const char *begin, const char *end, imk_unit *unit, imk_error *error)
 {
     imk_error own;
@@ -340,7 +354,7 @@ imk_status imk_unit_parse(const char *begin, const char *end, imk_unit *unit, im
                        .per_root_hertz = result.hertz_halves % 2 != 0};
     for (int i = 0; i < IMKI_DIMENSIONS; i++)
         parsed.dimension.half[i] = (int8_t)result.half[i];
-    memcpy(parsed.text, begin, (size_t)(end - begin));
+    put_text(begin, end, sizeof parsed.text, parsed.text);
     *unit = parsed;
     return IMK_OK;
 }

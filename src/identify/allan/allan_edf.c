@@ -14,6 +14,8 @@
  */
 #include "allan_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 
 /* Generalised autocovariance of the sums of a sampled process at lag l, up to terms that the
@@ -28,15 +30,15 @@ double imki_allan_autocovariance(int alpha, double lag)
     case IMK_WHITE_PHASE:
         return l < 0.5 ? 1.0 : 0.0;
     case IMK_FLICKER_PHASE:
-        return l < 0.5 ? 0.0 : -(euler_plus_log_pi + log(l));
+        return l < 0.5 ? 0.0 : -(euler_plus_log_pi + imk_ln(l));
     case IMK_WHITE_RATE:
         return -l;
     case IMK_FLICKER_RATE:
-        return l < 0.5 ? 0.0 : l * l * log(l);
+        return l < 0.5 ? 0.0 : l * l * imk_ln(l);
     case IMK_RANDOM_WALK_RATE:
         return l * l * l - l;
     case IMK_FLICKER_WALK_RATE:
-        return l < 0.5 ? 0.0 : -l * l * l * l * log(l);
+        return l < 0.5 ? 0.0 : -l * l * l * l * imk_ln(l);
     case IMK_RANDOM_RUN_RATE:
         return -l * (l * l - 1) * (l * l - 4);
     }
@@ -52,15 +54,15 @@ static double continuous_kernel(int alpha, double t)
     case IMK_WHITE_PHASE:
         return -a;
     case IMK_FLICKER_PHASE:
-        return a > 0 ? square * log(a) : 0;
+        return a > 0 ? square * imk_ln(a) : 0;
     case IMK_WHITE_RATE:
         return square * a;
     case IMK_FLICKER_RATE:
-        return a > 0 ? -square * square * log(a) : 0;
+        return a > 0 ? -square * square * imk_ln(a) : 0;
     case IMK_RANDOM_WALK_RATE:
         return -square * square * a;
     case IMK_FLICKER_WALK_RATE:
-        return a > 0 ? square * square * square * log(a) : 0;
+        return a > 0 ? square * square * square * imk_ln(a) : 0;
     case IMK_RANDOM_RUN_RATE:
         return square * square * square * a;
     }

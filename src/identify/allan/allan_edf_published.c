@@ -8,6 +8,7 @@
  * fit does not hold (TOTDEV with phase noise, MTOT below m = 8, HTOT below m = 16) the reflections
  * add next to nothing, and the degrees of freedom are those of the statistic it stands for. */
 #include "allan_internal.h"
+#include "imukit/elementary.h"
 
 #include <math.h>
 
@@ -102,7 +103,7 @@ double imk_allan_bias_published(imk_allan_statistic statistic, imk_power_law typ
     case IMK_ALLAN_HADAMARD_TOTAL:
         return hadamard[row];
     case IMK_ALLAN_THEO1:
-        return 1 / (a[row] + b[row] / pow((double)m, c[row]));
+        return 1 / (a[row] + b[row] / imk_exp(c[row] * imk_ln((double)m)));
     default:
         return 1;
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The Allan family by name, and the averaging factors each member takes. */
 #include "allan_internal.h"
+#include "imukit/elementary.h"
 
 #include <math.h>
 
@@ -74,7 +75,7 @@ static size_t grid_factor(imk_allan_grid grid, size_t place)
     if (grid == IMK_ALLAN_OCTAVE)
         return place < 8 * sizeof(size_t) ? (size_t)1 << place : SIZE_MAX;
     if (grid == IMK_ALLAN_DECADE) {
-        const double m = pow(10.0, (double)place / PER_DECADE) + 0.5;
+        const double m = imk_exp(2.302585092994046 * (double)place / PER_DECADE) + 0.5;
         return m < 0x1p53 ? (size_t)m : SIZE_MAX;
     }
     if (grid == IMK_ALLAN_ALL || place < DENSE)

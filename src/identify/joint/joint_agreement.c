@@ -40,7 +40,7 @@ static double likelihood(const imki_fit *fit, const imki_bands *bands)
     double sum = 0;
     for (size_t b = 0; b < bands->count; b++) {
         const double s = imki_fit_spectrum(fit, b);
-        sum += bands->degrees[b] * (log(s) + bands->power[b] / s);
+        sum += bands->degrees[b] * imki_deviance(bands->power[b], s);
     }
     return -0.5 * sum;
 }

@@ -10,6 +10,7 @@
 #include "joint_shape_internal.h"
 
 #include "imukit/distributions.h"
+#include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
 
 #include <math.h>
@@ -158,7 +159,7 @@ static double moved(const imki_joint_fit *j, size_t i, double value, double step
     case IMKI_SHAPE_AMOUNT:
         break;
     }
-    return fmin(fmax(value * exp(fmin(fmax(step, -reach), reach)), low), high);
+    return fmin(fmax(value * imk_exp(fmin(fmax(step, -reach), reach)), low), high);
 }
 
 /* Those of a shape by differences: a hundred-thousandth is far from rounding,
@@ -250,7 +251,7 @@ static double likelihood(const imki_joint_fit *j)
     double sum = 0;
     for (size_t b = 0; b < bands->count; b++) {
         const double s = imki_fit_spectrum(j->w->fit, b);
-        sum += bands->degrees[b] * (log(s) + bands->power[b] / s);
+        sum += bands->degrees[b] * imki_deviance(bands->power[b], s);
     }
     return -0.5 * sum;
 }

@@ -10,6 +10,7 @@
  * Q(v) = sum w_i (x_i - m)^2 falls with v, and is chi-square with n - 1 degrees at the true one:
  * the interval of the spread is where it lies between the quantiles [VIECHTBAUER2007]. */
 #include "imukit/distributions.h"
+#include "imukit/elementary.h"
 #include "imukit/identify_joint.h"
 
 #include <math.h>
@@ -47,8 +48,8 @@ static double restricted_likelihood(const members *s, double variance)
     double weight, sum = 0;
     (void)weighted_mean(s, variance, &weight);
     for (size_t i = 0; i < s->count; i++)
-        sum += log(variance + s->sigma[i] * s->sigma[i]);
-    return -0.5 * (sum + log(weight) + scatter(s, variance));
+        sum += imk_ln(variance + s->sigma[i] * s->sigma[i]);
+    return -0.5 * (sum + imk_ln(weight) + scatter(s, variance));
 }
 
 /* The variance at which the scatter has fallen to a value; 0 when it begins below. */

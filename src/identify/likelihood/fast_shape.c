@@ -16,6 +16,7 @@
  * show it to deserve, so that it does not bend the rest of the spectrum. */
 #include "identify/joint/joint_shape_internal.h"
 
+#include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
 
 #include <math.h>
@@ -91,9 +92,9 @@ static double best_resonance(imki_joint_fit *j, double widest, imk_resonance *be
         return 0;
     for (int i = 0; i < FREQUENCIES; i++) {
         const double part = (double)i / (FREQUENCIES - 1);
-        const double f = LOWEST / bands->dt * exp(log(HIGHEST / LOWEST) * part);
+        const double f = LOWEST / bands->dt * imk_exp(imk_ln(HIGHEST / LOWEST) * part);
         for (int k = 0; k < QUALITIES; k++) {
-            const double q = widest * exp(log(Q_LAST / widest) * k / (QUALITIES - 1));
+            const double q = widest * imk_exp(imk_ln(Q_LAST / widest) * k / (QUALITIES - 1));
             double amount = 0;
             imki_resonance_shape(f, q, bands, shape);
             const double gain = score_gain(j, scale, shape, &amount);

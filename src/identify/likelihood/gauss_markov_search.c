@@ -5,6 +5,7 @@
  * term at a time, and then all settled together by scoring steps in log T with
  * dS/d log T = amount dshape/d log T, every amount refitted at each step. */
 #include "identify_internal.h"
+#include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
 
 #include <math.h>
@@ -94,7 +95,7 @@ static bool take_time_step(imki_fit *fit, const imki_bands *bands, int held, siz
     imki_gauss_markov_range(bands, &shortest, &longest);
     for (double part = 1; part > 0.05; part *= 0.4) {
         for (size_t i = 0; i < count; i++) {
-            const double time = start.correlation_time[terms[i]] * exp(part * step[i]);
+            const double time = start.correlation_time[terms[i]] * imk_exp(part * step[i]);
             set_time(fit, bands, terms[i], fmax(0.25 * shortest, fmin(2 * longest, time)));
         }
         if (refit(fit, bands, held) > start.log_likelihood)
@@ -145,10 +146,10 @@ bool imki_gauss_markov_add(imki_fit *fit, const imki_bands *bands, double gain)
     const size_t slot = IMKI_FIRST_GAUSS_MARKOV + term;
     fit->active[slot] = true;
     fit->amount[slot] = 0;
-    const int points = (int)(log(longest / shortest) / log(GRID_STEP)) + 2;
+    const int points = (int)(imk_ln(longest / shortest) / imk_ln(GRID_STEP)) + 2;
     for (int i = 0; i < points; i++) {
         set_time(fit, bands, term,
-                 shortest * exp(log(longest / shortest) * i / (double)(points - 1)));
+                 shortest * imk_exp(imk_ln(longest / shortest) * i / (double)(points - 1)));
         if (!(fit->amount[slot] > 0))
             fit->amount[slot] =
                 amount_at_corner(bands, fit->correlation_time[term], fit->shape[slot]);

@@ -7,6 +7,7 @@
  * chance that a term is called present. */
 #include "base/workspace_internal.h"
 #include "imukit/distributions.h"
+#include "imukit/elementary.h"
 #include "imukit/identify_plan.h"
 #include "imukit/linear_algebra.h"
 
@@ -276,8 +277,8 @@ static double ramp_variance(const plan *p)
 {
     double sum = 0;
     for (size_t b = 0; b < p->bands && p->degrees[b] < 1.5 && b < SINGLES; b += 2) {
-        const double half = 1.5707963267948966 * p->index[b] / p->n, s = sin(half);
-        const double dt = p->settings->dt, d = sqrt(2 / p->n) * dt * cos(half) / (2 * s * s);
+        const double half = 1.5707963267948966 * p->index[b] / p->n, s = imk_sin(half);
+        const double dt = p->settings->dt, d = sqrt(2 / p->n) * dt * imk_cos(half) / (2 * s * s);
         sum += d * d * dt / p->spectrum[b];
     }
     return 1 / sum;
@@ -292,7 +293,7 @@ static double divergence(const plan *p, const double *spectrum)
         const double ratio = p->spectrum[b] / spectrum[b];
         if (!(spectrum[b] > 0))
             return HUGE_VAL;
-        sum += p->degrees[b] * (ratio - 1 - log(ratio));
+        sum += p->degrees[b] * (ratio - 1 - imk_ln(ratio));
     }
     return sum;
 }
@@ -404,12 +405,12 @@ static double detection_of(plan *p, size_t term, double z)
 /* A Gauss-Markov term's threshold: term_search.c. */
 static double gauss_markov_quantile(const plan *p)
 {
-    const double path = fmax(0, 0.5 * log(p->n / 300)), chance = 0.1 * p->settings->significance;
+    const double path = fmax(0, 0.5 * imk_ln(p->n / 300)), chance = 0.1 * p->settings->significance;
     double low = 0, high = 10;
     for (int i = 0; i < 40; i++) {
         const double z = 0.5 * (low + high);
         const double p_above =
-            imk_normal_probability(-z) + path / 6.283185307179586 * exp(-0.5 * z * z);
+            imk_normal_probability(-z) + path / 6.283185307179586 * imk_exp(-0.5 * z * z);
         *(p_above > chance ? &low : &high) = z;
     }
     return high;

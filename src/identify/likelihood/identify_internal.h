@@ -4,6 +4,7 @@
 #ifndef IMUKIT_IDENTIFY_INTERNAL_H
 #define IMUKIT_IDENTIFY_INTERNAL_H
 
+#include "base/logarithm_internal.h"
 #include "base/workspace_internal.h"
 #include "identify/records/screen_internal.h" /* the record's faults */
 #include "imukit/identify.h"
@@ -46,6 +47,17 @@ typedef struct imki_bands {
      * of u_k c_k and of u_k^2; 0 where `length` is not n. */
     double end_product[2][IMKI_BANDS_MAX], end_square[2][IMKI_BANDS_MAX];
 } imki_bands;
+
+/* What a coefficient of power P has less of log-likelihood, times two, where the spectrum is S than
+ * where S = P: r - 1 - log r, r = P/S. The sum of log S + P/S over 1e6 samples is 1e7, whose last
+ * digit is 2e-9; this one's is some hundred, so that a fit can tell steps that gain 1e-8. S is
+ * between the least spectrum and its inverse. */
+static const double IMKI_LEAST_SPECTRUM = 1e-150, IMKI_MOST_SPECTRUM = 1e150;
+static inline double imki_deviance(double power, double spectrum)
+{
+    const double ratio = (power > IMKI_LEAST_SPECTRUM ? power : IMKI_LEAST_SPECTRUM) / spectrum;
+    return ratio - 1 - imki_ln_of_normal(ratio, 0);
+}
 
 /* Spectrum and powers of a fit at the bands, and rows that its slope is summed with. */
 typedef struct imki_evaluation {

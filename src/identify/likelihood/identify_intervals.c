@@ -2,6 +2,7 @@
 /* Values, standard deviations and profile-likelihood intervals of the chosen terms. */
 #include "identify_internal.h"
 #include "imukit/distributions.h"
+#include "imukit/elementary.h"
 
 #include <math.h>
 #include <string.h>
@@ -61,7 +62,7 @@ static void average_with_quantization(imki_work *w, imk_estimate *e)
     const double behind = chosen - fit->log_likelihood, ahead = behind + (on ? needed : -needed);
     if (!(ahead < drop && behind < drop + 1)) /* far from the other, whose centre is outside */
         return;
-    const double weight = 1 / (1 + exp(-ahead)), other = fit->amount[IMK_NOISE_WHITE];
+    const double weight = 1 / (1 + imk_exp(-ahead)), other = fit->amount[IMK_NOISE_WHITE];
     e->free_value = sqrt(weight * e->free_value * e->free_value + (1 - weight) * other);
 }
 
@@ -109,10 +110,10 @@ static void store_gauss_markov(imki_work *w, imk_identification *result, size_t 
     p.held_time = (int)term;
     p.drop = drop;
     imk_estimate *t = &g->correlation_time;
-    const double free_time = p.best.correlation_time[term], place = log(free_time);
+    const double free_time = p.best.correlation_time[term], place = imk_ln(free_time);
     t->free_value = free_time;
-    t->lower = exp(imki_interval_end(&p, place, -0.3, place - 4.6));
-    t->upper = exp(imki_interval_end(&p, place, 0.3, place + 4.6));
+    t->lower = imk_exp(imki_interval_end(&p, place, -0.3, place - 4.6));
+    t->upper = imk_exp(imki_interval_end(&p, place, 0.3, place + 4.6));
     t->sigma = (t->upper - t->lower) / (2 * sqrt(2 * drop));
     imki_fit_restore(w->fit, w->bands, &chosen);
 }

@@ -2,6 +2,7 @@
 /* The channel's spectrum, and what its lines are. */
 #include "identify/records/missing_internal.h"
 #include "identify_internal.h"
+#include "imukit/elementary.h"
 #include "imukit/fourier.h"
 
 #include <math.h>
@@ -181,7 +182,7 @@ static double first_allan_deviation(const imki_bands *bands)
 {
     double sum = 0, degrees = 0;
     for (size_t b = 0; b < bands->count; b++) {
-        const double s = sin(3.141592653589793 * bands->frequency[b] * bands->dt);
+        const double s = imk_sin(3.141592653589793 * bands->frequency[b] * bands->dt);
         sum += bands->degrees[b] * bands->power[b] * 2 * s * s;
         degrees += bands->degrees[b];
     }

@@ -15,6 +15,7 @@
  *
  * which keeps them positive and never makes the distance larger [FEVOTTE2011]. Frequencies are
  * taken in bands of equal ratio, each with the weight of its width. */
+#include "imukit/elementary.h"
 #include "imukit/identify_plan.h"
 
 #include <math.h>
@@ -28,7 +29,7 @@ typedef struct spectrum {
 
 static void set_bands(spectrum *p, double dt, double duration)
 {
-    const double low = 0.5 / duration, ratio = exp(log(0.5 / (dt * low)) / BANDS);
+    const double low = 0.5 / duration, ratio = imk_exp(imk_ln(0.5 / (dt * low)) / BANDS);
     double from = low;
     for (int b = 0; b < BANDS; b++, from *= ratio) {
         const double f = 0.5 * from * (1 + ratio);

@@ -5,6 +5,8 @@
  * and damping are searched on the likelihood, all amounts refitted at each point. */
 #include "identify_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 
 /* Two parameters must earn ten units of log-likelihood: chance alone does so once in 2e4 records.
@@ -34,15 +36,15 @@ typedef struct filter_search {
 static double height(void *context, double logarithm)
 {
     filter_search *s = context;
-    *s->field = exp(logarithm);
+    *s->field = imk_exp(logarithm);
     return likelihood_with(s->fit, s->bands, *s->filter);
 }
 
 static double search(filter_search *s, double *field, double low, double high, double reach)
 {
     s->field = field;
-    low = fmax(log(*field) - reach, log(low));
-    high = fmin(log(*field) + reach, log(high));
+    low = fmax(imk_ln(*field) - reach, imk_ln(low));
+    high = fmin(imk_ln(*field) + reach, imk_ln(high));
     return height(s, imki_peak(height, s, low, high, SECTIONS));
 }
 
@@ -51,10 +53,10 @@ static double search(filter_search *s, double *field, double low, double high, d
 static double fit_order(imki_fit *fit, const imki_bands *bands, double damping,
                         imk_low_pass *filter)
 {
-    const double rate = 1 / bands->dt, step = log(200.0) / (GRID - 1);
+    const double rate = 1 / bands->dt, step = imk_ln(200.0) / (GRID - 1);
     double best = -HUGE_VAL, bandwidth = rate;
     for (int i = 0; i < GRID; i++) {
-        const imk_low_pass trial = {0.01 * rate * exp(step * i), damping};
+        const imk_low_pass trial = {0.01 * rate * imk_exp(step * i), damping};
         const double l = likelihood_with(fit, bands, trial);
         bandwidth = l > best ? trial.bandwidth : bandwidth;
         best = l > best ? l : best;

@@ -3,6 +3,8 @@
  */
 #include "identify_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 
 /* Everything that was chosen, with white noise, bias instability, random walk and the term itself
@@ -38,7 +40,7 @@ static double height(const imki_interval_profile *p)
     const imki_fit *fit = p->fit;
     if (p->held == IMKI_HELD_RAMP || !fit->ramp_active || p->bands->singles == 0)
         return fit->log_likelihood;
-    return fit->log_likelihood - 0.5 * log(imki_fit_ramp_information(fit, p->bands));
+    return fit->log_likelihood - 0.5 * imk_ln(imki_fit_ramp_information(fit, p->bands));
 }
 
 /* Signed root of twice the fall of the likelihood, less what it is at the interval's end: nearly
@@ -47,8 +49,8 @@ double imki_interval_beyond(const imki_interval_profile *p, double place)
 {
     if (p->held_time >= 0) {
         const size_t term = (size_t)p->held_time;
-        p->fit->correlation_time[term] = exp(place);
-        imki_gauss_markov_shape(p->fit, p->bands, exp(place),
+        p->fit->correlation_time[term] = imk_exp(place);
+        imki_gauss_markov_shape(p->fit, p->bands, imk_exp(place),
                                 p->fit->shape[IMKI_FIRST_GAUSS_MARKOV + term]);
     } else if (p->held == IMKI_HELD_RAMP) {
         p->fit->ramp = place;

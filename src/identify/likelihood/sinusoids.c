@@ -8,6 +8,7 @@
  * c cos x + s sin x, x = 2 pi f (i - (n - 1)/2), the columns are cos x, sin x, the change with f,
  * and 1. As x is counted from the middle of the record, f is estimated independently of c and s. */
 #include "identify_internal.h"
+#include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
 
 #include <math.h>
@@ -24,15 +25,15 @@ typedef struct phasor {
 static phasor phasor_of(size_t n, double cycles)
 {
     const double step = turn * cycles;
-    return (phasor){cycles, 0.5 * (double)(n - 1), 1, 0, cos(step), sin(step)};
+    return (phasor){cycles, 0.5 * (double)(n - 1), 1, 0, imk_cos(step), imk_sin(step)};
 }
 
 static void set_phase(phasor *p, size_t i)
 {
     const double turns = p->cycles * ((double)i - p->middle);
     const double phase = turn * (turns - floor(turns));
-    p->re = cos(phase);
-    p->im = sin(phase);
+    p->re = imk_cos(phase);
+    p->im = imk_sin(phase);
 }
 
 static void advance(phasor *p)

@@ -12,6 +12,8 @@
  * that any window costs the same. */
 #include "identify_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 
 /* gain > 30 has a chance of about e^-30 per window, 1e-7 in a record of 1e6 windows; an excess
@@ -27,7 +29,7 @@ static double mean_power(const double *cumulative, size_t from, size_t to)
 
 static double gain_of(double degrees, double ratio)
 {
-    return 0.5 * degrees * (ratio - 1 - log(ratio));
+    return 0.5 * degrees * (ratio - 1 - imk_ln(ratio));
 }
 
 /* Ratio at which a window of so many degrees gains GAIN_MIN, at least RATIO_MIN. */

@@ -6,6 +6,8 @@
  * searched, by turns. */
 #include "identify_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 
 enum { WINDOW_BANDS = 160, TURNS = 6, SECTIONS = 14 };
@@ -50,7 +52,7 @@ static double local_likelihood(const local_spectrum *w, double frequency, double
     double sum = 0;
     for (size_t b = 0; b < w->count; b++) {
         const double s = level + amount * shape[b];
-        sum += w->degrees[b] * (log(s) + w->power[b] / s);
+        sum += w->degrees[b] * imki_deviance(w->power[b], s);
     }
     *variance = amount;
     return -0.5 * sum;
@@ -86,15 +88,15 @@ static double local_height(void *context, double logarithm)
 {
     local_search *s = context;
     double variance;
-    *s->field = exp(logarithm);
+    *s->field = imk_exp(logarithm);
     return local_likelihood(s->window, s->resonance->frequency, s->resonance->q, &variance);
 }
 
 static void search_locally(local_search *s, double *field, double reach)
 {
-    const double low = log(*field) - reach, high = log(*field) + reach;
+    const double low = imk_ln(*field) - reach, high = imk_ln(*field) + reach;
     s->field = field;
-    *field = exp(imki_peak(local_height, s, low, high, SECTIONS));
+    *field = imk_exp(imki_peak(local_height, s, low, high, SECTIONS));
 }
 
 /* A resonance has skirts: between one and four half-power widths from its peak its spectrum holds

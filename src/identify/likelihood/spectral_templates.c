@@ -6,6 +6,8 @@
  * account up to coefficient CORRECTED, where it is 0.03 %. */
 #include "identify_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 
 enum { CORRECTED = 1000 };
@@ -46,7 +48,7 @@ static double quantization_at(const imki_bands *bands, size_t b)
     const double spectrum = imk_quantization_sampled_spectrum(1, dt, f);
     if (bands->length[b] == bands->n)
         return spectrum;
-    const double half = cos(3.141592653589793 * f * dt);
+    const double half = imk_cos(3.141592653589793 * f * dt);
     return spectrum + 4 / ((double)bands->length[b] * dt) * half * half;
 }
 
@@ -58,7 +60,7 @@ void imki_templates_set(imki_fit *fit, const imki_bands *bands)
         fit->shape[IMK_NOISE_WHITE][b] = imk_white_sampled_spectrum(1, dt, f);
         fit->shape[IMK_NOISE_BIAS_INSTABILITY][b] = flicker_at(bands, b);
         fit->shape[IMK_NOISE_RANDOM_WALK][b] = imk_random_walk_sampled_spectrum(1, dt, f);
-        const double sine = sin(3.141592653589793 * f * dt);
+        const double sine = imk_sin(3.141592653589793 * f * dt);
         fit->sine_square[b] = sine * sine;
     }
 }
@@ -70,8 +72,8 @@ void imki_templates_set(imki_fit *fit, const imki_bands *bands)
 void imki_gauss_markov_shape(const imki_fit *fit, const imki_bands *bands, double correlation_time,
                              double *shape)
 {
-    const double x = bands->dt / correlation_time, phi = exp(-x), distance = -expm1(-x);
-    const double numerator = bands->dt * -expm1(-2 * x);
+    const double x = bands->dt / correlation_time, phi = imk_exp(-x), distance = -imk_expm1(-x);
+    const double numerator = bands->dt * -imk_expm1(-2 * x);
     for (size_t b = 0; b < bands->count; b++) {
         const double reciprocal = 1 / (distance * distance + 4 * phi * fit->sine_square[b]);
         const double ratio = distance * reciprocal, n = (double)bands->length[b];
@@ -79,7 +81,7 @@ void imki_gauss_markov_shape(const imki_fit *fit, const imki_bands *bands, doubl
                    4 / n * bands->dt * phi * ratio * ratio * (1 - fit->sine_square[b]);
     }
     /* The even and the odd ones singly: b = 0 is k = 1. */
-    const double far = exp(-x * (double)bands->n);
+    const double far = imk_exp(-x * (double)bands->n);
     for (size_t b = 0; b < bands->singles; b++) {
         const double reciprocal = 1 / (distance * distance + 4 * phi * fit->sine_square[b]);
         const double ratio = distance * reciprocal;

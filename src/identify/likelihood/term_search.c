@@ -17,6 +17,7 @@
  * - a ramp: see ramp_penalty(). */
 #include "identify_internal.h"
 #include "imukit/distributions.h"
+#include "imukit/elementary.h"
 
 #include <math.h>
 
@@ -39,12 +40,12 @@ imki_penalties imki_penalties_of(const imki_bands *bands, double significance)
     double shortest, longest, path = 0;
     p.term = 0.5 * imk_chi_square_quantile(1 - 2 * significance, 1);
     if (imki_gauss_markov_range(bands, &shortest, &longest))
-        path = 0.5 * log(longest / shortest);
+        path = 0.5 * imk_ln(longest / shortest);
     double low = 0, high = 50;
     for (int i = 0; i < 40; i++) {
         const double gain = 0.5 * (low + high);
         const double chance =
-            imk_normal_probability(-sqrt(2 * gain)) + path / 6.283185307179586 * exp(-gain);
+            imk_normal_probability(-sqrt(2 * gain)) + path / 6.283185307179586 * imk_exp(-gain);
         *(chance > 0.1 * significance ? &low : &high) = gain;
     }
     p.gauss_markov = high;

@@ -8,6 +8,8 @@
 #include "identify/allan/allan_internal.h"
 #include "long_record_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -84,7 +86,7 @@ static imk_allan_point short_point(const imk_identify_record *r, size_t m, size_
 {
     const double variance = short_variance(r, m), beside = short_variance(r, neighbour);
     imk_allan_point point = {.m = m, .deviation = sqrt(variance)};
-    const double slope = log(beside / variance) / log((double)neighbour / (double)m);
+    const double slope = imk_ln(beside / variance) / imk_ln((double)neighbour / (double)m);
     point.type = imki_allan_type_at(r->samples / m, type_of_slope(slope), before);
     for (size_t f = 0; f < r->short_count; f++)
         if (r->short_factor[f] == m)

@@ -4,7 +4,10 @@
 #include "long_record_internal.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
+
+enum { PIECE = 64 };
 
 /* A value at or beyond the last of the list. */
 static void enter(imki_extremes *e, double value)
@@ -28,12 +31,32 @@ static void enter(imki_extremes *e, double value)
         e->run = e->longest = 0;
 }
 
-static void look(imki_extremes *e, size_t count, const double *samples, double sign, double highest)
+/* A piece all of whose extreme values are known, as coarse steps make them: their counts have no
+ * branch, and become vectors.
+ * @return false: nothing was counted */
+static bool add_known(imki_extremes *e, const double *samples, double sign)
 {
-    if (e->distinct == IMKI_EXTREMES && highest < e->value[IMKI_EXTREMES - 1]) {
-        e->run = 0;
-        return;
+    uint64_t found[IMKI_EXTREMES] = {0}, reaching = 0;
+    const double last = e->value[IMKI_EXTREMES - 1];
+    for (size_t i = 0; i < PIECE; i++)
+        reaching += sign * samples[i] >= last;
+    for (size_t k = 0; k < IMKI_EXTREMES && reaching > 0; k++)
+        for (size_t i = 0; i < PIECE; i++)
+            found[k] += sign * samples[i] == e->value[k];
+    if (found[0] + found[1] + found[2] + found[3] != reaching)
+        return false;
+    for (size_t k = 0; k < IMKI_EXTREMES; k++)
+        e->count[k] += (size_t)found[k];
+    for (size_t i = 0; i < PIECE && found[0] > 0; i++) {
+        e->run = sign * samples[i] == e->value[0] ? e->run + 1 : 0;
+        e->longest = e->run > e->longest ? e->run : e->longest;
     }
+    e->run = found[0] > 0 ? e->run : 0;
+    return true;
+}
+
+static void add_each(imki_extremes *e, size_t count, const double *samples, double sign)
+{
     for (size_t i = 0; i < count; i++) {
         const double value = sign * samples[i];
         if (!(e->distinct < IMKI_EXTREMES || value >= e->value[e->distinct - 1])) {
@@ -45,6 +68,20 @@ static void look(imki_extremes *e, size_t count, const double *samples, double s
         enter(e, value);
         e->run = value == e->value[0] ? e->run + 1 : 0;
         e->longest = e->run > e->longest ? e->run : e->longest;
+    }
+}
+
+static void look(imki_extremes *e, size_t count, const double *samples, double sign, double highest)
+{
+    if (e->distinct == IMKI_EXTREMES && highest < e->value[IMKI_EXTREMES - 1]) {
+        e->run = 0;
+        return;
+    }
+    for (size_t i = 0; i < count; i += PIECE) {
+        const size_t size = count - i < PIECE ? count - i : PIECE;
+        const bool known = size == PIECE && e->distinct == IMKI_EXTREMES;
+        if (!known || !add_known(e, samples + i, sign))
+            add_each(e, size, samples + i, sign);
     }
 }
 

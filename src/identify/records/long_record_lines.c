@@ -4,6 +4,8 @@
  * from a line above into the means is left out there and is no line of its own. */
 #include "long_record_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 
 static const double pi = 3.141592653589793;
@@ -104,10 +106,10 @@ static double tone_power(const imki_spectrum *s, double k0, size_t k)
     const double n = (double)s->n, d = (double)k - k0;
     if (fabs(d) < 1e-3)
         return 0.5 * n * s->dt;
-    const double w = pi * (double)k / n, w0 = pi * k0 / n, half = sin(0.5 * pi * d);
+    const double w = pi * (double)k / n, w0 = pi * k0 / n, half = imk_sin(0.5 * pi * d);
     /* cos w - cos w0 and 1 - cos without cancellation */
-    const double difference = 2 * sin(0.5 * (w0 + w)) * sin(0.5 * pi * d / n);
-    const double x = 2 * sin(0.5 * w0) * cos(0.5 * w) / difference;
+    const double difference = 2 * imk_sin(0.5 * (w0 + w)) * imk_sin(0.5 * pi * d / n);
+    const double x = 2 * imk_sin(0.5 * w0) * imk_cos(0.5 * w) / difference;
     return s->dt / n * x * x * 2 * half * half;
 }
 

@@ -16,6 +16,8 @@
  * there is a part of that. */
 #include "long_record_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -45,12 +47,12 @@ static double fast_power(const imki_spectrum *fast, double frequency)
 /* What folds down to a frequency f of the means. */
 static double folded_power(const imki_spectrum *fast, size_t block, double frequency)
 {
-    const double step = 1 / ((double)block * fast->dt), s = sin(pi * frequency / step);
+    const double step = 1 / ((double)block * fast->dt), s = imk_sin(pi * frequency / step);
     double sum = 0;
     for (size_t j = 1; j < block; j++) {
         const double f = frequency + (double)j * step;
         const double nyquist = 0.5 / fast->dt, seen = f > nyquist ? 2 * nyquist - f : f;
-        const double d = s / ((double)block * sin(pi * f * fast->dt));
+        const double d = s / ((double)block * imk_sin(pi * f * fast->dt));
         sum += fast_power(fast, seen) * d * d;
     }
     return sum;
@@ -71,7 +73,7 @@ static void undo_means(const imki_spectrum *fast, const imki_spectrum *slow, siz
             power += c[i] * c[i] * slow->dt;
         power /= (double)(to - from);
         const double f = 0.5 * (double)(k + stop - 1) * step_hz;
-        const double d = sin(pi * f * slow->dt) / ((double)block * sin(pi * f * fast->dt));
+        const double d = imk_sin(pi * f * slow->dt) / ((double)block * imk_sin(pi * f * fast->dt));
         const double folded = folded_power(fast, block, f);
         const double s = fmax((power - folded) / (d * d), 0.01 * power);
         const double factor = 1 / sqrt(d * d + folded / s);

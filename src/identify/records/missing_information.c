@@ -15,6 +15,8 @@
  * interval of white noise, which is nothing but that level, is a tenth wider than it need be.) */
 #include "missing_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 
 /* Share of the gaps' spectrum within f/10, f in cycles per sample: of a run of l samples within
@@ -44,7 +46,7 @@ void imki_missing_restore(const imki_missing *m, size_t n, double *coefficients)
         b = 0;
         for (size_t k = m->line[i].first; k <= m->line[i].last; k++) {
             const double lost = imki_missing_between(m, m->lost, &b, k), c = coefficients[k];
-            const double under = lost * exp(imki_missing_between(m, m->level, &b, k));
+            const double under = lost * imk_exp(imki_missing_between(m, m->level, &b, k));
             coefficients[k] = copysign(sqrt(c * c * (1 - lost) + under), c);
         }
     }

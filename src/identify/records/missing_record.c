@@ -15,6 +15,7 @@
 #include "missing_internal.h"
 
 #include "base/workspace_internal.h"
+#include "imukit/elementary.h"
 #include "imukit/fourier.h"
 
 #include <math.h>
@@ -137,8 +138,8 @@ static void start(imki_work *w, imki_missing *m)
     imki_missing_bands(m, w->n);
     m->line_count = 0;
     for (size_t b = 0; b < m->bands; b++) {
-        const double s = sin(1.5707963267948966 * m->centre[b] / (double)w->n);
-        m->level[b] = log(fast + walk / (4 * s * s));
+        const double s = imk_sin(1.5707963267948966 * m->centre[b] / (double)w->n);
+        m->level[b] = imk_ln(fast + walk / (4 * s * s));
     }
     double last = 0;
     for (size_t i = 0; i < w->n; i++) {
@@ -265,7 +266,7 @@ static double adopt_fit(const imki_work *w, imki_missing *m)
     size_t at = 0, lost_at = 0;
     for (size_t b = 0; b < bands->count; b++) {
         const size_t k = (size_t)(bands->frequency[b] * 2 * (double)w->n * bands->dt + 0.5);
-        level[b] = log(imki_fit_spectrum(w->fit, b) / bands->dt);
+        level[b] = imk_ln(imki_fit_spectrum(w->fit, b) / bands->dt);
         lost[b] = imki_missing_between(m, m->lost, &lost_at, k);
         const double moved = level[b] - imki_missing_between(m, m->level, &at, k);
         change += 0.5 * bands->degrees[b] * moved * moved;

@@ -5,6 +5,8 @@
  * runs on through the gaps. */
 #include "missing_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -99,8 +101,8 @@ static void spread_levels(const imki_missing *m, size_t n, double *variance)
         const double low = imki_missing_between(m, m->level, &b, k);
         size_t ahead = b;
         const double high = imki_missing_between(m, m->level, &ahead, end - 1);
-        const double ratio = end - k > 1 ? exp((high - low) / (double)(end - k - 1)) : 1;
-        double v = exp(low);
+        const double ratio = end - k > 1 ? imk_exp((high - low) / (double)(end - k - 1)) : 1;
+        double v = imk_exp(low);
         for (; k < end; k++, v *= ratio)
             variance[k] = v;
     }
@@ -190,7 +192,7 @@ double imki_missing_levels(imki_work *w, imki_missing *m, const double *power,
         peak = fmax(peak, smoothed[b]);
     }
     for (size_t b = 0; b < m->bands; b++) {
-        const double level = log(fmax(smoothed[b], 1e-20 * peak));
+        const double level = imk_ln(fmax(smoothed[b], 1e-20 * peak));
         const double moved = level - m->level[b];
         change += 0.5 * degrees[b] * moved * moved;
         m->level[b] = level;

@@ -7,9 +7,21 @@
 #include "base/sort_internal.h"
 #include "imukit/record_screen.h"
 
+#include <stdint.h>
+
 static inline bool imki_is_there(double value)
 {
     return value - value == 0;
+}
+
+/* Eight samples times a sign are all below a limit: none is missing, and none at the limit. */
+enum { IMKI_EIGHT = 8 };
+static inline bool imki_eight_below(const double *value, double sign, double limit)
+{
+    uint64_t below = 0; /* a sum has no branch, and becomes vectors */
+    for (size_t l = 0; l < IMKI_EIGHT; l++)
+        below += sign * value[l] < limit;
+    return below == IMKI_EIGHT;
 }
 
 /* record_checks.c */

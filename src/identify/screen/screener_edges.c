@@ -10,6 +10,8 @@
  * is kept, if it is among the 256 largest. Values in steps are counted by whole steps. */
 #include "screener_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -50,8 +52,8 @@ void imki_edges_add(imki_edges *high, imki_edges *low, size_t count, const doubl
 /* How many samples noise does not have within some standard deviations of its largest. */
 static double crowd_beyond_chance(size_t samples, double within)
 {
-    const double fall = sqrt(2 * log((double)samples)) * within;
-    return 1 + log(by_chance) / log1p(-exp(-fall));
+    const double fall = sqrt(2 * imk_ln((double)samples)) * within;
+    return 1 + imk_ln(by_chance) / imk_ln1p(-imk_exp(-fall));
 }
 
 bool imki_edge_is_abrupt(const imki_edges *e, size_t samples, double deviation, double step)

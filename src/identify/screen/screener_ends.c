@@ -69,8 +69,14 @@ static bool add_known(imki_ends *e, size_t place, size_t count, const double *sa
     if (!(step > 0))
         return false;
     const double scale = sign / step, origin = first / step + 0.5, most = (double)e->distinct;
+    const bool full = e->distinct == IMKI_SCREEN_ENDS;
+    const double limit = first - (most - 0.5) * step; /* of values that may be the last known */
     size_t found[NEW + 1] = {0}, runs = 0, last[NEW + 1] = {0}, before = OTHER;
     for (size_t i = 0; i < count; i++) {
+        while (full && i + IMKI_EIGHT < count && imki_eight_below(samples + i, sign, limit)) {
+            before = OTHER;
+            i += IMKI_EIGHT;
+        }
         const double steps = origin - samples[i] * scale;
         const size_t at = steps < most ? (steps >= 0 ? (size_t)steps : NEW) : OTHER;
         found[at]++;
@@ -78,7 +84,6 @@ static bool add_known(imki_ends *e, size_t place, size_t count, const double *sa
         runs += at == 0 && before != 0;
         before = at;
     }
-    const bool full = e->distinct == IMKI_SCREEN_ENDS;
     if (found[NEW] > 0 || (!full && found[OTHER] > 0))
         return false;
     for (size_t k = 0; k < e->distinct; k++)

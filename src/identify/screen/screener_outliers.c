@@ -36,6 +36,7 @@ typedef struct stretch {
     const double *value;
     size_t margin, end, count; /* samples margin … end - 1 of count are those to assess */
     double shoulder, threshold;
+    double range[RANGES]; /* of its whole blocks */
 } stretch;
 
 /* Median of some values, at most WINDOW, and the scale of their distances from it. */
@@ -78,12 +79,13 @@ static void set_scale(imk_screener *s, stretch *in)
     double range[RANGES];
     size_t count = 0;
     for (size_t i = in->margin; i + BLOCK <= in->end; i += BLOCK)
-        range[count++] = imki_block_range(in->value + i);
+        in->range[count++] = imki_block_range(in->value + i);
     in->threshold = in->shoulder = HUGE_VAL;
     if (count == 0 && !(s->scale > 0))
         return;
     double step = s->step;
     if (count > (s->scale > 0 ? 7u : 0u)) {
+        memcpy(range, in->range, count * sizeof *range);
         imki_sort(range, count);
         step = imki_coarse_step(count, range, step);
         const double scale = imki_median_on_steps(count, range, step) / median_range;
@@ -165,15 +167,17 @@ static void keep_tail(imk_screener *s, const stretch *in)
 
 void imki_screen_outliers(imk_screener *s)
 {
-    stretch in = {.value = s->value, .margin = s->tail_count};
+    stretch in;
+    in.value = s->value;
+    in.margin = s->tail_count;
     memcpy(s->value, s->tail, s->tail_count * sizeof *s->tail);
     in.end = in.margin + append(s->count[0], s->raw[0], s->mark, IMKI_SCREEN_CHUNK,
                                 s->value + in.margin, s->place);
     in.count = in.end + append(s->count[1], s->raw[1], NULL, REACH, s->value + in.end, NULL);
     set_scale(s, &in);
     size_t i = in.margin;
-    for (; in.threshold < HUGE_VAL && i + BLOCK <= in.end; i += BLOCK)
-        if (!(imki_block_range(in.value + i) < in.shoulder))
+    for (size_t k = 0; in.threshold < HUGE_VAL && i + BLOCK <= in.end; i += BLOCK, k++)
+        if (!(in.range[k] < in.shoulder))
             assess_block(s, &in, i);
     for (; in.threshold < HUGE_VAL && i < in.end; i++)
         assess(s, &in, i);

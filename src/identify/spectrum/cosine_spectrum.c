@@ -8,6 +8,8 @@
  * averaging loses nothing. */
 #include "identify/likelihood/identify_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 
 /* Band edges: a coefficient each up to IMKI_SINGLE_BANDS, then 3 % wide, but near a resonance no
@@ -50,8 +52,8 @@ static double ramp_coefficient(size_t n, double dt, size_t k)
 {
     if (k % 2 == 0)
         return 0;
-    const double half = 1.5707963267948966 * (double)k / (double)n, s = sin(half);
-    return -sqrt(2.0 / (double)n) * dt * cos(half) / (2 * s * s);
+    const double half = 1.5707963267948966 * (double)k / (double)n, s = imk_sin(half);
+    return -sqrt(2.0 / (double)n) * dt * imk_cos(half) / (2 * s * s);
 }
 
 /* What the rounding errors before the first sample, e_0, and behind the last, e_n, add to the
@@ -63,7 +65,7 @@ static void add_end_sums(imki_bands *bands, size_t b, size_t k, size_t end,
 {
     const double n = (double)spectrum->n,
                  half = 1.5707963267948966 * 0.5 * (double)(k + end - 1) / n;
-    const double u = sqrt(2 / n) * cos(half) / spectrum->dt;
+    const double u = sqrt(2 / n) * imk_cos(half) / spectrum->dt;
     double sum[2] = {0, 0};
     for (size_t i = k; i < end; i++)
         sum[i % 2] += spectrum->coefficients[i];

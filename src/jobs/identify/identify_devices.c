@@ -7,6 +7,13 @@
 
 #include <math.h>
 
+/* sqrt(a^2 + b^2) of numbers that are not negative, of any size. */
+static double root_of_squares(double a, double b)
+{
+    const double large = fmax(a, b), ratio = large > 0 ? fmin(a, b) / large : 0;
+    return large * sqrt(1 + ratio * ratio);
+}
+
 /* The two that are farthest apart, in sigmas. */
 static void find_farthest(imk_device_term *t, size_t count)
 {
@@ -14,7 +21,8 @@ static void find_farthest(imk_device_term *t, size_t count)
     for (size_t r = 0; r < count; r++)
         for (size_t q = 0; q < count; q++) {
             const imk_device_strength *a = &t->device[r], *b = &t->device[q];
-            const double sigmas = (b->square - a->square) / hypot(a->square_sigma, b->square_sigma);
+            const double sigmas =
+                (b->square - a->square) / root_of_squares(a->square_sigma, b->square_sigma);
             if (q != r && sigmas > t->sigmas) {
                 t->sigmas = sigmas;
                 t->low = r;

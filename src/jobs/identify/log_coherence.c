@@ -162,7 +162,8 @@ static double coherence_of(const imki_coherence *s, size_t a, size_t b)
     for (size_t k = 0; k < BANDS; k++) {
         const double *cross = s->pair[pair_of(a, b)].cross[k];
         const double power = s->power[a][k] / s->segments[a] * s->power[b][k] / s->segments[b];
-        band[k] = power > 0 ? hypot(cross[0], cross[1]) / (segments * sqrt(power)) : 0;
+        band[k] =
+            power > 0 ? sqrt((cross[0] * cross[0] + cross[1] * cross[1]) / power) / segments : 0;
         /* of the samples: steps have 2 - 2 cos(2 pi f) times their power */
         level[k] = sqrt(power) / (1 - imk_cos(two_pi * (double)(k + 1) / SEGMENT));
         sorted[k] = level[k];

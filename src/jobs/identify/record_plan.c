@@ -7,6 +7,8 @@
 #include "jobs/job_internal.h"
 #include "jobs/record/record_check_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -178,11 +180,11 @@ static void list_records(const planning *about)
         p->record[p->record_count++] = record_of(about, p->duration);
     if (!p->settings.curve)
         return;
-    const double low = log(fmax(60, fewest_samples * about->settings.dt));
-    const double high = log(fmax(7 * day, 3 * p->duration));
+    const double low = imk_ln(fmax(60, fewest_samples * about->settings.dt));
+    const double high = imk_ln(fmax(7 * day, 3 * p->duration));
     for (; p->curve_count < IMK_PLAN_CURVE; p->curve_count++)
         p->curve[p->curve_count] = record_of(
-            about, exp(low + (high - low) * (double)p->curve_count / (IMK_PLAN_CURVE - 1)));
+            about, imk_exp(low + (high - low) * (double)p->curve_count / (IMK_PLAN_CURVE - 1)));
 }
 
 /* ---- requirements ---------------------------------------------------------------------------- */

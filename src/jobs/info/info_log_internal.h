@@ -20,14 +20,21 @@ typedef struct imki_info_window {
     bool follows; /* the window before stands right before it */
 } imki_info_window;
 
+/* An end of the range of a column: the lowest or the highest value. */
+typedef struct imki_info_end {
+    size_t rows, run; /* rows at it, and those that follow one another now */
+    bool sticks;      /* three have followed one another */
+} imki_info_end;
+
 /* Sums of a column. */
 typedef struct imki_info_sums {
-    double sum, squares;                       /* of the window at present */
-    size_t values;                             /* in it */
-    double total;                              /* of all rows */
-    double within;                             /* sum of squares about the means of windows */
-    size_t degrees;                            /* of it */
-    size_t at_low, at_high, run_low, run_high; /* rows at the extremes in runs, and in this run */
+    double sum, squares; /* of the window at present */
+    double least, most;  /* in it */
+    size_t values;       /* in it */
+    double total;        /* of all rows */
+    double within;       /* sum of squares about the means of windows */
+    size_t degrees;      /* of it */
+    imki_info_end low, high;
 } imki_info_sums;
 
 typedef struct imki_info_rows {

@@ -12,42 +12,56 @@ void imki_info_rows_begin(imki_info_rows *r)
     r->follows = false;
     for (size_t c = 0; c < r->info->channel_count; c++) {
         r->sums[c].sum = r->sums[c].squares = 0;
-        r->sums[c].run_low = r->sums[c].run_high = 0;
+        r->sums[c].low.run = r->sums[c].high.run = 0;
         r->sums[c].values = 0;
     }
 }
 
-/* Rows of a run at an extreme count from the third one on, and then with those before it. */
-static void run_at(double value, double extreme, size_t *run, size_t *count)
+/* Rows at an extreme, and whether three of them follow one another. */
+static void end_at(imki_info_end *end, double value, double extreme)
 {
-    *run = value == extreme ? *run + 1 : 0;
-    if (*run >= 3)
-        *count += *run == 3 ? 3 : 1;
+    end->run = value == extreme ? end->run + 1 : 0;
+    end->rows += value == extreme;
+    end->sticks = end->sticks || end->run >= 3;
 }
 
 static void add_value(imk_info_channel *channel, imki_info_sums *s, double value)
 {
     if (!isfinite(value)) {
-        s->run_low = s->run_high = 0;
+        s->low.run = s->high.run = 0;
         return;
     }
     if (channel->finite == 0)
         channel->lowest = channel->highest = value;
     if (value < channel->lowest) {
         channel->lowest = value;
-        s->at_low = s->run_low = 0;
+        s->low = (imki_info_end){0};
     }
     if (value > channel->highest) {
         channel->highest = value;
-        s->at_high = s->run_high = 0;
+        s->high = (imki_info_end){0};
     }
-    run_at(value, channel->lowest, &s->run_low, &s->at_low);
-    run_at(value, channel->highest, &s->run_high, &s->at_high);
+    end_at(&s->low, value, channel->lowest);
+    end_at(&s->high, value, channel->highest);
+    const double off = value - channel->mean;
+    s->least = s->values == 0 ? off : fmin(s->least, off);
+    s->most = s->values == 0 ? off : fmax(s->most, off);
     channel->finite++;
     s->values++;
     s->total += value;
-    s->sum += value - channel->mean;
-    s->squares += (value - channel->mean) * (value - channel->mean);
+    s->sum += off;
+    s->squares += off * off;
+}
+
+/* Mean and scatter of a window without the value that is farthest off: a single wrong sample moves
+ * no sensor. The mean is about that of the column. */
+static double scatter_without_one(const imki_info_sums *s, double *mean)
+{
+    const double all = s->sum / (double)s->values, n = (double)(s->values - 1);
+    const double off = s->most - all > all - s->least ? s->most : s->least;
+    *mean = (s->sum - off) / n;
+    const double squares = s->squares - off * off - n * *mean * *mean;
+    return squares > 0 ? sqrt(squares / (n - 1)) : 0;
 }
 
 /* Columns without most of their values give nothing to the window; without a sensor's axis it shows
@@ -64,8 +78,9 @@ static void end_window(imki_info_rows *r)
         for (int a = 0; a < IMKI_INFO_AXES; a++)
             if (r->axis[a] == (int)c) {
                 whole = whole && holds;
-                w.mean[a] = r->info->channel[c].mean + mean;
-                w.scatter[a] = holds && within > 0 ? sqrt(within / (n - 1)) : 0;
+                double calm = 0;
+                w.scatter[a] = holds ? scatter_without_one(s, &calm) : 0;
+                w.mean[a] = r->info->channel[c].mean + calm;
             }
         if (holds) {
             s->within += within > 0 ? within : 0;
@@ -126,7 +141,7 @@ void imki_info_rows_end(imki_info_rows *r, double *scratch)
         if (r->sample[c] && !channel->column.label)
             channel->step =
                 imki_record_resolution(r->sampled, r->sample[c], scratch, IMKI_INFO_SAMPLE);
-        channel->clipped_low = is_fine(channel) ? s->at_low : 0;
-        channel->clipped_high = is_fine(channel) ? s->at_high : 0;
+        channel->clipped_low = is_fine(channel) && s->low.sticks ? s->low.rows : 0;
+        channel->clipped_high = is_fine(channel) && s->high.sticks ? s->high.rows : 0;
     }
 }

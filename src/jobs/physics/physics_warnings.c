@@ -6,13 +6,14 @@
 
 #include <math.h>
 
-/* Did the output go where the input is? A tenth of it, the biases of the run and the scatter are
- * allowed for; one sample does not show the scatter. */
-static bool is_followed(const imk_physics_log *log, const imk_triad *t, double input)
+/* Did the output go where the input is? A tenth of it and the biases of the run are allowed for,
+ * and `scatter` standard deviations of the samples; one sample does not show these. */
+static bool is_followed(const imk_physics_log *log, const imk_triad *t, double input,
+                        double scatter)
 {
     const double allowed = 0.1 * fabs(input) + fabs(t->bias.fixed.value[0]) +
                            5 * t->bias.repeatability.value[0] +
-                           5 * t->noise.bias_instability.value[0] + 5 * log->deviation[0];
+                           5 * t->noise.bias_instability.value[0] + scatter * log->deviation[0];
     return log->settings.input.frequency > 0 || log->samples < 2 ||
            fabs(log->last[0] - input) <= allowed;
 }
@@ -44,10 +45,11 @@ void imki_physics_warn(imk_physics_log *log)
     const char *code = range > 0 && fabs(input) >= range               ? "range"
                        : range > 0 && fabs(last) >= 0.999 * range      ? "physics:saturated"
                        : band > 0 && input != 0 && fabs(input) <= band ? "dead_band"
-                       : !is_followed(log, t, input)                   ? "not_followed"
+                       : !is_followed(log, t, input, 5)                ? "not_followed"
+                       : input != 0 && !is_followed(log, t, input, 0)  ? "scattered"
                                                                        : NULL;
     if (code)
         imki_find(&log->findings, IMK_FINDING_WARNING, code, gyro ? "rad/s" : "m/s^2",
-                  IMKI_NUMBERS(input, last, range, band));
+                  IMKI_NUMBERS(input, last, range, band, log->deviation[0]));
     warn_of_temperature(log, t);
 }

@@ -9,6 +9,7 @@
 
 #include "row_keys_internal.h"
 
+#include "imukit/elementary.h"
 #include "jobs/job_internal.h"
 
 #include <math.h>
@@ -118,7 +119,7 @@ void imki_packets_tell(const imki_packets *packets, size_t channels, const char 
     if (channels < LEAST || packets->rows < ROWS_LEAST)
         return;
     const double share = (double)packets->again[most] / (double)packets->rows;
-    const double by_chance = (double)most * pow(upper_quarter(packets), (double)most);
+    const double by_chance = (double)most * imk_exp((double)most * imk_ln(upper_quarter(packets)));
     if (share > told + 3 * by_chance)
         imki_find(findings, IMK_FINDING_WARNING, "packets", name,
                   IMKI_NUMBERS(100 * share, (double)most));

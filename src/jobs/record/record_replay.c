@@ -18,6 +18,8 @@
 
 #include "jobs/job_internal.h"
 
+#include "imukit/elementary.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -188,7 +190,7 @@ void imki_replay_add(imki_replay *r, size_t channels, const int *column, size_t 
 static double changes_beyond_chance(size_t rows, double agreement)
 {
     const double n = (double)rows;
-    return log(by_chance / (n * n / 2)) / log(agreement);
+    return imk_ln(by_chance / (n * n / 2)) / imk_ln(agreement);
 }
 
 void imki_replay_tell(imki_replay *r, double agreement, const char *name, double dt,

@@ -78,10 +78,11 @@ static double angle(const void *design, const imk_schematic_moment *moment)
     return imki_signal(&imk_rate_gyro_instrument, "gimbal_angle", moment);
 }
 
+/* The signal is the torque that the bar withstands. */
 static double spring(const void *design, const imk_schematic_moment *moment)
 {
     (void)design;
-    return imki_signal(&imk_rate_gyro_instrument, "spring_torque", moment);
+    return -imki_signal(&imk_rate_gyro_instrument, "spring_torque", moment);
 }
 
 static double held_rate(const void *design, const imk_schematic_moment *moment)
@@ -94,7 +95,7 @@ static const imk_schematic_quantity quantities[] = {
     {"angular momentum", NULL, NULL, NULL, NULL, NULL},
     {"gyroscopic torque", "M", "N*m", "uNm", "M = H Ω", torque},
     {"torque of the torsion bar", "M_k", "N*m", "uNm", "M_k = −k θ", spring},
-    {"precession under that torque", "Ω_p", "rad/s", "deg/s", "Ω_p = M/H", held_rate},
+    {"precession under that torque", "Ω_p", "rad/s", "deg/s", "Ω_p = −M_k/H", held_rate},
     {"gimbal angle", "θ", "rad", "deg", "I θ'' + c θ' + k θ = H Ω", angle},
     {"gimbal angle per rate", NULL, NULL, NULL, NULL, NULL},
     {"natural frequency", NULL, NULL, NULL, NULL, NULL},

@@ -67,10 +67,11 @@ static double float_angle(const void *design, const imk_schematic_moment *moment
     return observed("float_angle", moment);
 }
 
+/* The signal has the sign of the reading: the torque acts against it. */
 static double torquer(const void *design, const imk_schematic_moment *moment)
 {
     (void)design;
-    return observed("torquer_torque", moment);
+    return -observed("torquer_torque", moment);
 }
 
 static double held_rate(const void *design, const imk_schematic_moment *moment)

@@ -127,6 +127,11 @@ static bool add_obstacles(const imk_info_log *info, imki_reasons *reasons)
         imki_reason(reasons, "no column is read as one of a gyro or an accelerometer");
     else if (!info->stated)
         imki_reason(reasons, "units or times are missing");
+    if (info->stopped)
+        imki_reason(reasons, "reading ended with an error");
+    for (size_t i = 0; i < info->channel_count; i++)
+        if (info->channel[i].finite == 0)
+            imki_reason(reasons, "no value of %s is a finite number", info->channel[i].column.name);
     if (constant)
         imki_reason(reasons, "all values of %s are the same", constant->column.name);
     if (info->times_refused)

@@ -61,13 +61,18 @@ class LogScreen {
     this.go.hidden = true;
     this.sort.replaceChildren();
     this.go.textContent = 'Identify';
-    const records = [];
+    const records = [], errors = [];
     for (const [name] of logs) {
       const record = await this.lookAt(name, turn);
-      if (turn !== this.turn || !record) return; // what is missing stays to be seen
-      records.push(record);
+      if (turn !== this.turn) return;
+      if (record) records.push(record);
+      else if (this.about.error) errors.push(this.about.error);
     }
-    if (logs.length === 0) return;
+    if (errors.length > 0) { // of the first one, what is missing stays to be seen
+      this.about.showProblem(errors[0]);
+      this.options.mark(errors[0]);
+    }
+    if (logs.length === 0 || records.length < logs.length) return;
     this.go.hidden = false;
     if (logs.length > 1) this.askSort(records);
     else if (records[0].motion === 'at_rest') this.identify();
@@ -89,10 +94,13 @@ class LogScreen {
     const done = await this.about.run([...words, '--json'], { files: this.choice.files, begin: `Reading ${name} …` });
     if (turn !== this.turn) return null;
     const error = done ? done.json.error : this.about.error;
-    if (error && error.code === 'unsupported') this.about.showProblem({ ...error, next: commandLine(['convert', operand(name), name.replace(/\.\w+$/, '') + '.npz']) });
+    if (error && error.message.includes('the page cannot read')) // but the command can: core/absent.c
+      this.about.showProblem({ ...error, next: commandLine(['convert', operand(name), name.replace(/\.\w+$/, '') + '.npz']) });
     const result = done && done.json.result;
     this.options.mark(error);
     if (result) this.about.result.append(this.summary(name, done.json, words));
+    if (error && this.choice.logs().length > 1)
+      this.about.result.append(...(result ? [] : [element('h2', {}, name)]), element('p', { class: 'failed' }, error.message));
     if (!result || error) return null;
     const readable = result.topics.filter((topic) => topic.readable);
     if (readable.length > 1 && !this.options.value('topic')) {
@@ -113,7 +121,7 @@ class LogScreen {
 
   columns({ rows, columns, rows_from: from }) {
     const shown = columns.map(({ name, unit }) => `${name} [${unit || '?'}]`).join(', ');
-    return element('p', { class: 'weak' }, `${rows} rows${from === 'size' ? ', by its size' : ''}: ${shown}`);
+    return element('p', { class: 'weak' }, `${rows} ${rows === 1 ? 'row' : 'rows'}${from === 'size' ? ', by its size' : ''}: ${shown}`);
   }
 
   /** Which of the sensors in a log. */

@@ -28,7 +28,9 @@ imk_status imki_csv_encoding_check(const imki_csv_header *header, imk_error *err
     for (size_t i = 0; i < header->count; i++) {
         imki_log_piece name = header->cell[i], unit;
         imki_log_unit_split(&name, &unit);
-        if (imki_csv_is_utf8(unit))
+        imk_unit readable;
+        if (imki_csv_is_utf8(unit) ||
+            imk_unit_parse(unit.begin, unit.end, &readable, NULL) == IMK_OK)
             continue;
         return imk_error_set(error, IMK_ERROR_FORMAT, "",
                              "the text is not UTF-8, and a unit is not readable",

@@ -68,6 +68,18 @@ void imki_verdict_boxes(const imk_verdict *v, imk_result *result)
             imk_result_finding(result, (int)v->message[k].level, v->message[k].text);
 }
 
+/* A message of the job as a sentence among others; what begins with the name of a channel, or in
+ * brackets, stays as it is. */
+static const char *sentence(imk_result *result, const char *text)
+{
+    const size_t size = strlen(text), word = strcspn(text, " ");
+    const bool plain = text[0] >= 'a' && text[0] <= 'z' && !memchr(text, '_', word);
+    const bool ends = size > 0 && strchr(".!?", text[size - 1]) != NULL;
+    return plain || !ends ? imk_result_key(result, "%c%s%s", plain ? text[0] - 'a' + 'A' : text[0],
+                                           text + 1, ends ? "" : ".")
+                          : text;
+}
+
 /* One box of doubts and one of notes: a page begins with the picture, not with a column of boxes.
  */
 void imki_verdict_brief_boxes(const imk_verdict *v, imk_result *result)
@@ -77,7 +89,7 @@ void imki_verdict_brief_boxes(const imk_verdict *v, imk_result *result)
         imk_finding_level level = IMK_FINDING_GOOD;
         for (size_t k = 0; k < v->count; k++) {
             const imk_message *m = &v->message[k];
-            const char *text = m->brief ? m->brief : m->text;
+            const char *text = sentence(result, m->brief ? m->brief : m->text);
             if (strcmp(m->code, "good") == 0 || (m->level >= IMK_FINDING_WARNING) != (doubts > 0))
                 continue;
             all = all ? imk_result_key(result, "%s %s", all, text) : text;

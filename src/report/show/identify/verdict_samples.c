@@ -340,10 +340,12 @@ static void assess_moves(imk_verdict *v, const imk_identify_log *log)
     if (!m.moved)
         return;
     if (m.still_end > m.still_first)
-        imki_verdict_add(v, IMK_FINDING_FAILURE, "moved",
-                         "the sensor was moved, or had not settled, between %.4g s and %.4g s; the "
-                         "longest part without this is read by --after %gs --before %gs.",
-                         m.first, m.end, m.still_first, m.still_end);
+        imki_verdict_add(
+            v, IMK_FINDING_FAILURE, "moved",
+            "the sensor was moved, or had not settled, %sbetween %.4g s and %.4g s; the "
+            "longest part without this is read by --after %gs --before %gs.",
+            m.still_first > m.first && m.still_end < m.end ? "at times " : "", m.first, m.end,
+            m.still_first, m.still_end);
     else
         imki_verdict_add(v, IMK_FINDING_FAILURE, "moved",
                          "the sensor was moved, or had not settled, between %.4g s and %.4g s, and "

@@ -72,8 +72,12 @@ static void assess_five_terms(imk_verdict *v, const imk_identify_log *log)
                       {r->gauss_markov_count > 0, "Gauss-Markov noise"}};
         bool any = false;
         channels |= (uint64_t)1 << c;
-        imki_text_add(&list, "%s%s from %.3g s (", list.size > 0 ? "; " : "",
-                      imk_even_record_column(&log->record, c)->name, r->five_terms_from);
+        imki_text_add(&list, "%s%s ", list.size > 0 ? "; " : "",
+                      imk_even_record_column(&log->record, c)->name);
+        if (isfinite(r->five_terms_from))
+            imki_text_add(&list, "from %.3g s (", r->five_terms_from);
+        else
+            imki_text_put(&list, "nowhere (");
         for (size_t k = 0; k < sizeof causes / sizeof causes[0]; k++)
             if (causes[k].is) {
                 imki_text_add(&list, "%s%s", any ? ", " : "", causes[k].name);
@@ -109,7 +113,12 @@ static void assess_length(imk_verdict *v, const imk_identify_log *log)
             from = fmax(from, log->result[c].valid_from);
             to = fmin(to, log->result[c].valid_to);
         }
-    if (from > 0)
+    if (from > to)
+        imki_verdict_add(v, IMK_FINDING_NOTE, "length",
+                         "%s at %.6g Hz%s: at no averaging time are the models of all channels "
+                         "valid.",
+                         length.text, 1 / record->dt, rate);
+    else if (from > 0)
         imki_verdict_add(
             v, imk_verdict_warns(v) ? IMK_FINDING_NOTE : IMK_FINDING_GOOD, "length",
             "%s at %.6g Hz%s: the model is valid for averaging times from %.3g s to %.3g s.",

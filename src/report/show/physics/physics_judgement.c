@@ -16,15 +16,22 @@ static const imk_triad *triad_of(const imk_physics_shown *p)
 
 /* ---- run ------------------------------------------------------------------------------------- */
 
+static bool is_told(const imk_findings *findings, const char *code)
+{
+    for (size_t k = 0; k < findings->count; k++)
+        if (strcmp(findings->item[k].code, code) == 0)
+            return true;
+    return false;
+}
+
 /* Findings that say that the reading is not the input. */
 static bool is_off(const imk_findings *findings)
 {
     static const char *const codes[] = {"range", "physics:saturated", "dead_band", "not_followed",
                                         "physics:touched"};
-    for (size_t k = 0; k < findings->count; k++)
-        for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++)
-            if (strcmp(findings->item[k].code, codes[i]) == 0)
-                return true;
+    for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++)
+        if (is_told(findings, codes[i]))
+            return true;
     return false;
 }
 
@@ -44,7 +51,7 @@ static void judge_run(const imk_physics_shown *p, imki_reasons *reasons)
     if (p->settings->input.frequency > 0 ||
         strcmp(p->settings->instrument->outputs[0].si, gyro ? "rad/s" : "m/s^2") != 0)
         imki_reason(reasons, "the run has %llu samples", (unsigned long long)r->samples);
-    else if (usability != IMK_NOT_USABLE && r->samples > 1)
+    else if (usability != IMK_NOT_USABLE && r->samples > 1 && !is_told(&r->findings, "scattered"))
         imki_reason(reasons, "the output follows the input of %.6g %s, with %.8g %s at the end",
                     input / unit.scale, unit.text, r->last[0] / unit.scale, unit.text);
     imki_judge(reasons, usability, usability == IMK_NOT_USABLE ? " at this input" : "");
