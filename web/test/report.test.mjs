@@ -8,7 +8,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test as unlimited } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { imukit, logOf } from './command.mjs';
+import { imukit } from './command.mjs';
 import { Browser } from './devtools.mjs';
 
 const scratch = mkdtempSync(join(tmpdir(), 'imukit-web-'));
@@ -22,12 +22,16 @@ function command(...words) {
   return done.stdout;
 }
 
-let browser, allan, other, printed;
+let browser, page, allan, other, printed;
 const test = (name, act) => unlimited(name, { timeout: 20000 }, act);
 
 before(async () => {
-  symlinkSync(logOf('still.csv', 'AHRS', '--rate', '100Hz', '--duration', '2min', '--seed', '5'), path('still.csv'));
-  symlinkSync(logOf('other.csv', 'MPU6050', '--rate', '50Hz', '--duration', '1min', '--seed', '6'), path('other.csv'));
+  // A gyro and an accelerometer: few panels are drawn quickly.
+  writeFileSync(path('pair.yaml'), `imukit: 1
+gyro: {direction: [1 0 0], noise: {angle_random_walk: 0.3 deg/sqrt(h), bias_instability: 4 deg/h}}
+accel: {direction: [1 0 0], noise: {velocity_random_walk: 0.06 m/s/sqrt(h)}}
+`);
+  for (const [name, seed] of [['still.csv', '5'], ['other.csv', '6']]) command('simulate', 'pair.yaml', '--rate', '100Hz', '--duration', '1min', '--seed', seed, '-o', name);
   allan = JSON.parse(command('allan', 'still.csv', '--json')).result;
   other = command('allan', 'other.csv', '--json', '--report', 'other.html');
   writeFileSync(path('other.json'), other);
@@ -35,6 +39,8 @@ before(async () => {
   printed = command('identify', 'still.csv', '--report', 'still.html', '-o', 'still.yaml');
   browser = await Browser.open();
   await browser.send('Browser.grantPermissions', { permissions: ['clipboardReadWrite', 'clipboardSanitizedWrite'] });
+  page = await browser.page(null);
+  await page.send('Emulation.setFocusEmulationEnabled', { enabled: true });
 }, { timeout: 30000 });
 after(async () => {
   await browser.close();
@@ -57,19 +63,19 @@ const tools = `
   const table = (k) => document.querySelectorAll('.table table')[k];
   const press = (name) => [...document.querySelectorAll('button')].find((made) => made.textContent === name).click();`;
 
-async function withReport(name, options, act) {
-  const page = await browser.page(null, options);
-  try {
-    if (options.scripts === false) await page.send('Emulation.setScriptExecutionDisabled', { value: true });
-    await page.send('Emulation.setFocusEmulationEnabled', { enabled: true });
-    await page.go(pathToFileURL(path(name)).href);
-    if (options.scripts !== false) await page.value(`void (window.t = (() => { ${tools} return { panel, plot, one, text, drawn, at, told, keys, key, look, table, press }; })())`);
-    await act(page);
-    assert.deepEqual(page.faults(), []);
-    assert.deepEqual(page.requests.filter((address) => address !== pathToFileURL(path(name)).href && !address.startsWith('data:')), []);
-  } finally {
-    await page.close();
-  }
+/** Act on a report, in a page that all cases load anew: it costs less than one for each. Afterwards the
+ *  console is empty and nobody was asked for anything. */
+async function withReport(name, { width = 1280, height = 900, dark = false, scripts = true }, act) {
+  const address = pathToFileURL(path(name)).href;
+  Object.assign(page, { messages: [], requests: [] });
+  await page.size(width, height);
+  await page.send('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value: dark ? 'dark' : 'light' }] });
+  await page.send('Emulation.setScriptExecutionDisabled', { value: !scripts });
+  await page.go(address);
+  if (scripts) await page.value(`void (window.t = (() => { ${tools} return { panel, plot, one, text, drawn, at, told, keys, key, look, table, press }; })())`);
+  await act(page);
+  assert.deepEqual(page.faults(), []);
+  assert.deepEqual(page.requests.filter((asked) => asked !== address && !asked.startsWith('data:')), []);
 }
 
 /** Numbers of a line such as "interval: 178 to 184 deg/h", with their powers of ten. */
@@ -260,7 +266,7 @@ test('without scripts the page is whole', () => withReport('still.html', { scrip
   assert.ok(figure > 300 && figure < table, `the figure ends at ${figure}, the table at ${table}`);
   const numbersIn = (text) => text.match(/\d[\d.]*/g), shown = new Set(numbersIn(await page.value('document.body.innerText')));
   const numbers = numbersIn(printed.split('\nToo short')[0]);
-  assert.ok(numbers.length > 90, `${numbers.length} numbers`);
+  assert.ok(numbers.length > 30, `${numbers.length} numbers`);
   assert.deepEqual(numbers.filter((number) => !shown.has(number)), []);
   const dots = await page.value(`[...document.querySelectorAll('.panel')].filter((panel) => JSON.parse(panel.querySelector('script').textContent).allan)
     .map((panel) => [...panel.querySelectorAll('[clip-path] path')].pop().getAttribute('d').match(/h0/g).length)`);
@@ -274,8 +280,8 @@ test('names of files and channels are text, not markup', async () => {
   for (const name of names) symlinkSync(path('still.csv'), path(name));
   command('allan', ...names, '--report', 'names.html');
   command('identify', names[1], '--report', 'name.html');
-  const channels = structuredClone(other).channels.slice(0, 3);
-  for (const channel of channels) channel.name = `</script>${image}${channel.name}`;
+  const channels = [0, 1].map(() => structuredClone(other.channels[0]));
+  channels.forEach((channel, k) => (channel.name = `</script>${image}${k}`));
   writeFileSync(path(`${image}.json`), JSON.stringify({ command: 'allan', result: { channels } }));
   for (const name of ['names.html', 'name.html'])
     await withReport(name, {}, async (page) => {
