@@ -60,6 +60,15 @@ static int refuse_rates(const several_logs *s, size_t record)
                              s->label[0], 1 / first->dt, s->label[record], 1 / other->dt);
 }
 
+/* A copy is no evidence. @return the exit code */
+static int refuse_copy(const several_logs *s, size_t record, size_t of)
+{
+    return command_failed_by("same_readings", NULL, s->label[record],
+                             "%s holds the readings of %s again: they would count as those of two "
+                             "logs; leave one of the two out",
+                             s->label[record], s->label[of]);
+}
+
 /* Why two logs cannot be compared. @return -1 or the exit code */
 static int check_channels(const several_logs *s, size_t record)
 {
@@ -107,6 +116,8 @@ static int compare(several_logs *s, identification *joint, const imk_executor *e
         imk_result_free(result);
         if (strcmp(error.field, "rate") == 0)
             return refuse_rates(s, (size_t)error.index);
+        if (strcmp(error.field, "readings") == 0)
+            return refuse_copy(s, (size_t)error.index, (size_t)error.value);
         return command_error(&error, joint->shown.name);
     }
     joint->shown.log = &several->joint;

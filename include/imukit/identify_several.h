@@ -87,7 +87,9 @@ IMK_API imk_status imk_identify_comparable(const imk_identify_log *first,
  *                 settings.summarise
  *  @param result  free it with imk_identify_several_free(); NULL after a failure
  *  @return errors of imk_identify_comparable() (error.index: the record), imk_identify_joint() and
- *          imk_repeatability_estimate() (error.field: the channel), IMK_ERROR_MEMORY */
+ *          imk_repeatability_estimate() (error.field: the channel), IMK_ERROR_MEMORY;
+ *          IMK_ERROR_CONFLICT also when the readings of a record are those of another one
+ *          (error.field "readings", error.index the record, error.value the other one, from 0) */
 IMK_API imk_status imk_identify_runs(size_t count, const imk_identify_log *const *logs,
                                      const imk_job *job, imk_identify_several **result,
                                      imk_error *error);
@@ -96,7 +98,7 @@ IMK_API imk_status imk_identify_runs(size_t count, const imk_identify_log *const
  *  Squares (N^2 and so on) are compared: they are nearly normal and known even if a term is absent,
  *  so a sensor without a term counts as one with little of it.
  *  @param count,logs,result  as for imk_identify_runs()
- *  @return errors of imk_identify_comparable(), IMK_ERROR_MEMORY */
+ *  @return errors of imk_identify_comparable(), IMK_ERROR_MEMORY, and that of the same readings */
 IMK_API imk_status imk_identify_devices(size_t count, const imk_identify_log *const *logs,
                                         const imk_job *job, imk_identify_several **result,
                                         imk_error *error);

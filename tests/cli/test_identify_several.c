@@ -191,6 +191,28 @@ static void test_runs(void **state)
     check_contains(out, "intervals cover the truth", "runs");
 }
 
+/* A copy counts once, under whatever name and in whatever format; a longer log is no copy. */
+static void test_copies(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {"run1.npy run2.npy copy.csv --runs",
+                                        "run1.npy copy.csv --devices --json"};
+    assert_int_equal(run("$I convert run1.npy copy.csv && "
+                         "head -n 29001 copy.csv > part.csv"),
+                     0);
+    for (size_t i = 0; i < 2; i++) {
+        char line[200];
+        snprintf(line, sizeof line, "$I identify %s", lines[i]);
+        assert_int_equal(run(line), 1);
+        check_contains(err,
+                       "error: copy.csv holds the readings of run1.npy again: they would count as "
+                       "those of two logs; leave one of the two out\n",
+                       lines[i]);
+    }
+    check_contains(out, "\"code\": \"same_readings\"", "copies");
+    assert_int_equal(run("$I identify copy.csv part.csv --devices"), 0);
+}
+
 /* Ten per cent more white noise is 23 standard deviations. */
 static void test_run_that_differs(void **state)
 {
@@ -350,6 +372,7 @@ int main(void)
         cmocka_unit_test(test_which),
         cmocka_unit_test(test_rates),
         cmocka_unit_test(test_runs),
+        cmocka_unit_test(test_copies),
         cmocka_unit_test(test_run_that_differs),
         cmocka_unit_test(test_devices),
         cmocka_unit_test(test_report),

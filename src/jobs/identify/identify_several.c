@@ -37,6 +37,44 @@ imk_device_strength imki_strength_of(const imk_estimate *e, double confidence)
     return s;
 }
 
+/* Numbers of the same readings differ by the rounding of their units. */
+static bool same_number(double a, double b)
+{
+    return fabs(a - b) <= 1e-9 * fabs(a);
+}
+
+/* A copy of a record has its means and its Allan deviations in all digits, on every channel: noise
+ * never has them twice. */
+static bool same_readings(const imk_identify_log *a, const imk_identify_log *b)
+{
+    bool same = a->record.rows == b->record.rows;
+    for (size_t c = 0; c < a->record.count && same; c++) {
+        const imk_allan_curve *one = &a->curve[c], *other = &b->curve[c];
+        same = one->count > 0 && one->count == other->count &&
+               same_number(a->result[c].mean, b->result[c].mean);
+        for (size_t k = 0; k < one->count && same; k++)
+            same = same_number(one->point[k].deviation, other->point[k].deviation);
+    }
+    return same;
+}
+
+static imk_status refuse_copies(size_t count, const imk_identify_log *const *logs, imk_error *error)
+{
+    for (size_t r = 1; r < count; r++)
+        for (size_t q = 0; q < r; q++)
+            if (same_readings(logs[q], logs[r])) {
+                imk_error_set(error, IMK_ERROR_CONFLICT, "readings",
+                              "all are those of an earlier record, which would count twice",
+                              "leave one of the two out");
+                if (error) {
+                    error->index = (int)r;
+                    error->value = (double)q;
+                }
+                return IMK_ERROR_CONFLICT;
+            }
+    return IMK_OK;
+}
+
 void imk_identify_several_free(imk_identify_several *result)
 {
     if (!result)
@@ -61,6 +99,8 @@ imk_identify_several *imki_several_begin(bool runs, size_t count,
         imk_error_set(error, IMK_ERROR_ARGUMENT, "count", NULL, NULL);
         return NULL;
     }
+    if (refuse_copies(count, logs, error) != IMK_OK)
+        return NULL;
     const imk_allocator allocator = job ? job->allocator : (imk_allocator){0};
     imk_identify_several *s = imki_resize(&allocator, NULL, sizeof *s);
     if (!s) {

@@ -6,7 +6,7 @@
 #include "imukit/identify_several.h"
 
 /* Everything but the comparison; NULL, with the error, where the records do not have the same
- * channels. */
+ * channels, or have the same readings. */
 imk_identify_several *imki_several_begin(bool runs, size_t count,
                                          const imk_identify_log *const *logs, const imk_job *job,
                                          imk_error *error);

@@ -30,7 +30,8 @@ static double largest_torque(const void *design)
     return d->momentum * LARGEST;
 }
 
-/* An angle about y is counterclockwise in the sheet. */
+/* An angle about y is counterclockwise in the sheet. The signal of the torquer has the sign of the
+ * reading: the torque acts against it. */
 static const imk_schematic_part parts[PARTS] = {
     [FLOAT] = {.id = "float",
                .signal = "float_angle",
@@ -45,7 +46,7 @@ static const imk_schematic_part parts[PARTS] = {
                 .move = IMK_MOVE_STRETCH_X,
                 .x = 452,
                 .y = 296,
-                .reach = 1,
+                .reach = -1,
                 .full = largest_torque,
                 .still = 0.5},
 };
@@ -67,7 +68,6 @@ static double float_angle(const void *design, const imk_schematic_moment *moment
     return observed("float_angle", moment);
 }
 
-/* The signal has the sign of the reading: the torque acts against it. */
 static double torquer(const void *design, const imk_schematic_moment *moment)
 {
     (void)design;

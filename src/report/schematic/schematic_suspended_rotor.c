@@ -1,18 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The electrostatically suspended gyro, cut open across the input axis x, which points out of the
- * sheet: y is to the right, z upwards. The case turns; the ball in it keeps its axis. */
+ * sheet: y is to the right, z upwards. The case turns; the ball in it keeps its axis
+ * as long as it spins. */
 #include "schematic_internal.h"
 
 #include "imukit/suspended_rotor.h"
 
 /* ---- the tables ------------------------------------------------------------------------------ */
 
-enum { CASE, KEEPS, SPIN, ALONG, PARTS };
+enum { CASE, KEEPS, SPINS, SPIN, STANDS, ALONG, FALLEN, PARTS };
 
 #define MIDDLE_X 200
 #define MIDDLE_Y 208
 #define RADIUS 92
-#define GAP 22 /* [px] */
+#define GAP 22      /* [px] */
+#define ALONG_X 440 /* the small picture */
+#define ALONG_Y 318
+#define SMALL 20 /* radius of the ball in it */
 #define RADIAN (180 / 3.14159265358979323846)
 
 static double gap_of(const void *design)
@@ -21,7 +25,14 @@ static double gap_of(const void *design)
     return d->gap;
 }
 
-/* A positive angle about x is counterclockwise in the sheet. */
+static double full_spin(const void *design)
+{
+    const imk_suspended_rotor *d = design;
+    return d->spin_rate;
+}
+
+/* A positive angle about x is counterclockwise in the sheet. What belongs to the spin fades with
+ * it; a ball that stands is taken along by the case. */
 static const imk_schematic_part parts[PARTS] = {
     [CASE] = {.id = "case",
               .signal = "turned",
@@ -36,6 +47,23 @@ static const imk_schematic_part parts[PARTS] = {
                .y = MIDDLE_Y,
                .reach = RADIAN},
     [SPIN] = {.id = "spin", .signal = "screen", .move = IMK_MOVE_FLOW, .reach = -60},
+    [SPINS] = {.id = "spins",
+               .signal = "spin",
+               .move = IMK_MOVE_GLOW,
+               .reach = 1,
+               .full = full_spin,
+               .held = true,
+               .still = 1},
+    [STANDS] = {.id = "stands",
+                .signal = "spin",
+                .move = IMK_MOVE_GLOW,
+                .reach = -1,
+                .full = full_spin,
+                .base = 1,
+                .held = true,
+                .still = 1},
+    [FALLEN] =
+        {.id = "fallen", .signal = "fallen", .move = IMK_MOVE_GLOW, .reach = 1, .held = true},
     [ALONG] = {.id = "along",
                .signal = "displacement_x",
                .move = IMK_MOVE_SHIFT_X,
@@ -67,6 +95,11 @@ static double drift(const void *design, const imk_schematic_moment *moment)
     return observed("drift", moment);
 }
 
+static double momentum(const void *design, const imk_schematic_moment *moment)
+{
+    return imk_suspended_rotor_momentum(design) * (observed("spin", moment) / full_spin(design));
+}
+
 static double spin(const void *design, const imk_schematic_moment *moment)
 {
     (void)design;
@@ -74,7 +107,7 @@ static double spin(const void *design, const imk_schematic_moment *moment)
 }
 
 static const imk_schematic_quantity quantities[] = {
-    {"angular momentum", NULL, NULL, NULL, NULL, NULL},
+    {"angular momentum of the ball", "H", "kg*m^2/s", "kg*m^2/s", "H = C ω", momentum},
     {"direction cosine of the axis along y", "s_y", "1", "1", "s' = s × Ω + drift", along_y},
     {"direction cosine of the axis along z", "s_z", "1", "1", "s' = s × Ω + drift", along_z},
     {"drift by unbalance and shape", "Ω_d", "rad/s", "deg/h", "Ω_d = M/H", drift},
@@ -119,45 +152,63 @@ static void draw_case(imki_drawing *d)
     }
 }
 
-static void draw_ball(imki_drawing *d)
+static void draw_marks(imki_drawing *d)
 {
-    imki_part_begin(d, KEEPS);
-    imki_draw_circle(d, "mass", MIDDLE_X, MIDDLE_Y, RADIUS);
-    imki_part_begin(d, SPIN);
     imki_dashes_begin(d, 3, 17);
     imki_draw_line(d, "rim-marks", MIDDLE_X - 86, MIDDLE_Y, MIDDLE_X + 86, MIDDLE_Y);
     imki_group_end(d);
+}
+
+static void draw_ball(imki_drawing *d)
+{
+    imki_draw_circle(d, "mass", MIDDLE_X, MIDDLE_Y, RADIUS);
+    imki_part_begin(d, STANDS);
+    draw_marks(d);
+    imki_part_end(d);
+    imki_part_begin(d, KEEPS);
+    imki_part_begin(d, SPINS);
+    imki_part_begin(d, SPIN);
+    draw_marks(d);
     imki_part_end(d);
     imki_draw_line(d, "axis", MIDDLE_X, MIDDLE_Y + 112, MIDDLE_X, MIDDLE_Y - 60);
     imki_draw_arrow(d, "two", MIDDLE_X, MIDDLE_Y - 24, MIDDLE_X, MIDDLE_Y - 88);
     imki_part_end(d);
+    imki_part_end(d);
 }
 
-/* A small picture of the gap along x, which the drawing does not show. */
-static void draw_along(imki_drawing *d)
+/* A small picture of the gap along x, which the drawing does not show, with the stops. */
+static void draw_along(imki_drawing *d, const imk_suspended_rotor *rotor)
 {
-    imki_draw_box(d, "field", 390, 296, 8, 44, 1);
-    imki_draw_box(d, "field", 482, 296, 8, 44, 1);
+    const double clear = GAP * rotor->clearance / rotor->gap;
+    const double thick = GAP - clear < 5 ? GAP - clear : 5;
+    for (int side = -1; side <= 1; side += 2) {
+        const double electrode = ALONG_X + side * (SMALL + GAP),
+                     stop = ALONG_X + side * (SMALL + clear);
+        imki_draw_box(d, "field", side > 0 ? electrode : electrode - 8, ALONG_Y - 22, 8, 44, 1);
+        imki_draw_box(d, "body", side > 0 ? stop : stop - thick, ALONG_Y - 8, thick, 16, 1);
+    }
     imki_part_begin(d, ALONG);
-    imki_draw_circle(d, "mass", 440, 318, 20);
+    imki_draw_circle(d, "mass", ALONG_X, ALONG_Y, SMALL);
     imki_part_end(d);
-    imki_draw_text(d, IMKI_MIDDLE, 440, 286, "gap along x");
+    imki_draw_text(d, IMKI_MIDDLE, ALONG_X, ALONG_Y - 32, "gap along x");
 }
 
 static void draw(imki_drawing *d, const void *design)
 {
-    (void)design;
     imki_part_begin(d, CASE);
     draw_case(d);
     draw_ball(d);
     imki_part_end(d);
-    draw_along(d);
+    draw_along(d, design);
     imki_draw_label(d, IMKI_START, 372, 96, "electrode", 368, 92, 270, 104);
     imki_draw_label(d, IMKI_START, 372, 130, "ball, H = Cω", 368, 126, 262, 160);
     imki_draw_label(d, IMKI_START, 372, 164, "vacuum, gap", 368, 160, 304, 178);
     imki_draw_label(d, IMKI_START, 372, 198, "case, turns: Ω", 368, 194, 336, 198);
     imki_draw_text(d, IMKI_START, 372, 234, "input x: to you");
-    imki_scale_bar(d, ALONG, 440, 352);
+    imki_scale_bar(d, ALONG, ALONG_X, ALONG_Y + 34);
+    imki_part_begin(d, FALLEN);
+    imki_draw_text(d, IMKI_START, 150, 390, "the ball has fallen");
+    imki_part_end(d);
     imki_draw_text(d, IMKI_END, 530, 66, "Ω = −s × s'");
 }
 
@@ -167,7 +218,7 @@ const imk_schematic imki_schematic_suspended_rotor = {
         "A ball spins in a vacuum between electrodes that hold it by electric fields. The "
         "case with the electrodes turns about the line of sight, and the ball keeps the "
         "direction of its axis. A small picture shows where the ball is in its gap along "
-        "the line of sight; too large a force lets it fall on its stop.",
+        "the line of sight; too large a force lets it fall on its stop, where it loses its spin.",
     .part_count = PARTS,
     .quantity_count = IMKI_SCHEMATIC_LENGTH(quantities),
     .slider_count = IMKI_SCHEMATIC_LENGTH(sliders),

@@ -5,6 +5,8 @@
 
 #include "imukit/vibrating_beam.h"
 
+#include <math.h>
+
 /* ---- the tables ------------------------------------------------------------------------------ */
 
 enum { MASS, FIRST_SPAN, FIRST, SECOND_SPAN, SECOND, PARTS };
@@ -73,20 +75,36 @@ static double axial(const void *design, const imk_schematic_moment *moment)
     return imki_signal(&imk_vibrating_beam_instrument, "force", moment);
 }
 
+/* A beam whose modulus is e times that at the reference temperature: its load counts 1/e, its
+ * square e times. */
+static double loaded(const imk_vibrating_beam *d, int beam, const imk_schematic_moment *moment)
+{
+    const double warm = moment->exposure->temperature - d->temperature;
+    const double per_kelvin = d->frequency_temperature + (beam == 1 ? d->temperature_mismatch : 0);
+    const double grown = 1 + per_kelvin * warm, e = grown > 0.01 ? grown : 0.01;
+    const double force = beam == 1 ? -axial(d, moment) : axial(d, moment);
+    return sqrt(e) * imk_vibrating_beam_loaded(d, beam, force / e);
+}
+
 static double first(const void *design, const imk_schematic_moment *moment)
 {
-    return imk_vibrating_beam_loaded(design, 0, axial(design, moment));
+    return loaded(design, 0, moment);
 }
 
 static double second(const void *design, const imk_schematic_moment *moment)
 {
-    return imk_vibrating_beam_loaded(design, 1, -axial(design, moment));
+    const imk_vibrating_beam *d = design;
+    return d->arrangement == IMK_BEAM_PAIR ? loaded(d, 1, moment) : (double)NAN;
 }
 
 static const imk_schematic_quantity quantities[] = {
-    {"axial force on the first beam", "N", "N", "mN", "N = m f", axial},
-    {"frequency of the first beam, pulled", "f_1", "Hz", "Hz", "f_1^2 = f_01^2 l(N)", first},
-    {"frequency of the second beam, pushed", "f_2", "Hz", "Hz", "f_2^2 = f_02^2 l(−N)", second},
+    {"axial force on the first beam", "N", "N", "mN", "N = m f + M", axial},
+    {"frequency of the first beam, pulled", "f_1", "Hz", "Hz", "f_1^2 ≈ f_01^2 (1 + c ΔT) + κ N",
+     first},
+    {"frequency of the second beam, pushed", "f_2", "Hz", "Hz", "f_2^2 ≈ f_02^2 (1 + c ΔT) − κ N",
+     second},
+    {"frequency of the first beam, unloaded", NULL, NULL, NULL, NULL, NULL},
+    {"frequency of the second beam, unloaded", NULL, NULL, NULL, NULL, NULL},
     {"change of the squared frequency per load", NULL, NULL, NULL, NULL, NULL},
     {"frequency per specific force, first beam", NULL, NULL, NULL, NULL, NULL},
     {"differential scale factor", NULL, NULL, NULL, NULL, NULL},
@@ -145,16 +163,19 @@ static void draw(imki_drawing *d, const void *design)
         draw_beam(d, SECOND_SPAN, SECOND, "two",
                   "M60 185C86.4 185 93.6 186 120 186S153.6 185 180 185");
     draw_mass(d);
-    imki_draw_label(d, IMKI_END, 530, 76, "beam 1: f_1", 440, 84, 440, 180);
-    if (pair)
-        imki_draw_label(d, IMKI_START, 12, 76, "beam 2: f_2", 100, 84, 100, 180);
-    imki_draw_label(d, IMKI_START, 320, 104, "flexure", 316, 98, 278, 106);
+    imki_draw_text(d, IMKI_END, 530, 76, "beam 1:");
+    imki_draw_label(d, IMKI_END, 530, 102, "f_1^2 ≈ f_{01}^2 + κN", 440, 110, 440, 180);
+    if (pair) {
+        imki_draw_text(d, IMKI_START, 12, 76, "beam 2:");
+        imki_draw_label(d, IMKI_START, 12, 102, "f_2^2 ≈ f_{02}^2 − κN", 100, 110, 100, 180);
+    }
+    imki_draw_label(d, IMKI_START, 310, 66, "flexure", 318, 72, 279, 100);
     imki_draw_label(d, IMKI_END, 228, 300, "proof mass", 170, 282, 200, 232);
     imki_draw_label(d, IMKI_START, 330, 300, "drive and pickoff", 420, 282, 424, 156);
     imki_draw_arrow(d, "accent", 440, 338, 520, 338);
     imki_draw_text(d, IMKI_END, 430, 345, "force f along x");
     imki_scale_bar(d, FIRST, 30, 330);
-    imki_draw_text(d, IMKI_END, 530, 390, pair ? "f_1^2 − f_2^2 = 2κmf" : "f_1^2 − f_{01}^2 = κmf");
+    imki_draw_text(d, IMKI_END, 530, 390, "N = mf + M (mount)");
 }
 
 const imk_schematic imki_schematic_vibrating_beam = {
