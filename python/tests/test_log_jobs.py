@@ -170,7 +170,9 @@ class Several(unittest.TestCase):
             imukit.identify_devices([x, {"a": x, "b": white(2000, seed=2)}], 100)
 
     def test_same_record_twice(self):
-        log = imukit.identify_devices([white(2000), white(2000)], 100)
+        with self.assertRaisesRegex(imukit.Error, "record 2.*earlier record"):
+            imukit.identify_devices([white(2000), white(2000)], 100)
+        log = imukit.identify_devices([white(2000), white(2000, seed=2)], 100)
         self.assertEqual(len(log.logs), 2)
 
     def test_endings_refused(self):
