@@ -67,6 +67,12 @@ test('each screen fits a telephone and a wide window, light and dark, without vi
         const ground = await page.value(`getComputedStyle(document.documentElement).backgroundColor.match(/\\d+/g).map(Number)`);
         assert.ok(options.dark ? Math.max(...ground) < 80 : Math.min(...ground) > 175, `${name}: the ground is ${ground}`);
         if (axe) assert.deepEqual(await page.violations(axe), [], `${name} at ${options.width} px`);
+        for (const between of options.width > 1000 ? [1000, 800, 500] : []) {
+          await page.size(between, options.height);
+          assert.equal(await page.overflow(), 0, `${name} at ${between} px`);
+          const cramped = `[...document.querySelectorAll('.slider')].filter((row) => row.scrollWidth > row.clientWidth).length`;
+          assert.equal(await page.value(cramped), 0, `sliders of ${name} at ${between} px`);
+        }
       });
 }, { timeout: 180000 });
 
